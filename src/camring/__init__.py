@@ -1,0 +1,88 @@
+"""Better cam rings and valve timing for radial-piston hydraulic motors.
+
+Everything here is loaded when it is first asked for, so that `import camring`
+and `camring --help` cost nothing.
+
+>>> import camring
+>>> motor_file = camring.read_motor_file("examples/wheel_motor.toml")  # doctest: +SKIP
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from camring.interfaces.config import MotorFile, read_motor_file
+    from camring.interfaces.errors import InputError
+    from camring.interfaces.study import Study, open_study, optimise, resume
+    from camring.metrics.summary import Metrics, summarise
+    from camring.objective.constraints import Constraints
+    from camring.objective.design_space import DesignSpace
+    from camring.objective.objective import Goal, Weights, evaluate
+    from camring.physics.cycle import Cycle, simulate, waveforms
+    from camring.physics.motor import Motor
+    from camring.physics.operating_point import OperatingPoint
+    from camring.physics.resolution import Resolution
+    from camring.physics.system import System
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "Constraints": "camring.objective.constraints",
+    "Cycle": "camring.physics.cycle",
+    "DesignSpace": "camring.objective.design_space",
+    "Goal": "camring.objective.objective",
+    "InputError": "camring.interfaces.errors",
+    "Metrics": "camring.metrics.summary",
+    "Motor": "camring.physics.motor",
+    "MotorFile": "camring.interfaces.config",
+    "OperatingPoint": "camring.physics.operating_point",
+    "Resolution": "camring.physics.resolution",
+    "Study": "camring.interfaces.study",
+    "System": "camring.physics.system",
+    "Weights": "camring.objective.objective",
+    "evaluate": "camring.objective.objective",
+    "open_study": "camring.interfaces.study",
+    "optimise": "camring.interfaces.study",
+    "read_motor_file": "camring.interfaces.config",
+    "resume": "camring.interfaces.study",
+    "simulate": "camring.physics.cycle",
+    "summarise": "camring.metrics.summary",
+    "waveforms": "camring.physics.cycle",
+}
+
+__all__ = [
+    "Constraints",
+    "Cycle",
+    "DesignSpace",
+    "Goal",
+    "InputError",
+    "Metrics",
+    "Motor",
+    "MotorFile",
+    "OperatingPoint",
+    "Resolution",
+    "Study",
+    "System",
+    "Weights",
+    "__version__",
+    "evaluate",
+    "open_study",
+    "optimise",
+    "read_motor_file",
+    "resume",
+    "simulate",
+    "summarise",
+    "waveforms",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'camring' has no attribute {name!r}")
+    found = getattr(import_module(_HOMES[name]), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
