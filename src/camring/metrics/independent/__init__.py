@@ -1,0 +1,88 @@
+"""Every result a second time, by a road that shares no formula with the first.
+
+The product computes a cycle with JAX on a fixed mesh. This package reads the
+same nouns into plain floats and computes model.md section 10 with SciPy: splines
+from `scipy.interpolate`, the periodic pressure by LSODA between kinks, spectra by
+Gauss quadrature, extremes by search. `camring optimise` validates with it, and
+the tests compare the two.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+from camring.metrics.independent.machine import Machine, Oil, Window, machine_of
+from camring.metrics.independent.orbit import Orbit, OrbitError, periodic_orbit
+from camring.metrics.independent.results import results
+from camring.metrics.independent.shape import NotStarShapedError
+
+__all__ = [
+    "IndependentSolution",
+    "Machine",
+    "NotStarShapedError",
+    "Oil",
+    "Orbit",
+    "OrbitError",
+    "Window",
+    "independent_results",
+    "independent_solution",
+    "machine_of",
+    "solve_machine",
+]
+
+
+@dataclass(frozen=True)
+class IndependentSolution:
+    """An orbit, its results, and what a reader should know about them."""
+
+    results: dict[str, float]
+    notes: tuple[str, ...]
+    orbit: Orbit
+
+
+def solve_machine(
+    machine: Machine, harmonics: int = 600, tolerance: float = 1e-10
+) -> IndependentSolution:
+    """Solve from plain numbers. Raises `OrbitError` or `NotStarShapedError`."""
+    orbit = periodic_orbit(machine, tolerance)
+    found = results(orbit, harmonics)
+    return IndependentSolution(found, tuple(_notes(machine, orbit, found)), orbit)
+
+
+def _notes(machine: Machine, orbit: Orbit, found: dict[str, float]) -> list[str]:
+    notes = []
+    if found["min_volume"] <= 0:
+        notes.append("chamber volume falls to zero or below")
+    if found["min_undercut_factor"] <= 0:
+        notes.append("the working surface is undercut")
+    if found["min_contact_force"] < 0:
+        notes.append("the roller lifts off the ring")
+    if found["min_pressure"] < machine.oil.vapour_pressure:
+        notes.append("chamber pressure falls below the vapour pressure")
+    if orbit.multiplier > 0.9:
+        notes.append(
+            f"nearly trapped oil: a pressure disturbance keeps {orbit.multiplier:.4f} of itself"
+        )
+    return notes
+
+
+def independent_solution(
+    motor: Any, fluid: Any, point: Any, harmonics: int = 600, tolerance: float = 1e-10
+) -> IndependentSolution:
+    """Solve one motor at one operating point; the nouns of `camring.physics`."""
+    return solve_machine(machine_of(motor, fluid, point), harmonics, tolerance)
+
+
+def independent_results(
+    motor: Any, fluid: Any, point: Any, harmonics: int = 600, tolerance: float = 1e-10
+) -> dict[str, float]:
+    """Results of model.md section 10 under its names, SI.
+
+    Parameters
+    ----------
+    harmonics
+        Highest shaft order of the ripple sums.
+    tolerance
+        Of the pressure solver, relative to the pressure difference of the ports;
+        1e-10 gives results good to about 1e-8, 1e-8 to about 1e-6 at half the time.
+    """
+    return independent_solution(motor, fluid, point, harmonics, tolerance).results

@@ -1,0 +1,369 @@
+"""The periodic chamber pressure on the second road: SciPy's LSODA between kinks.
+
+One orbit is a chain of elements, none containing a kink. On each, LSODA gives
+the pressure at Chebyshev points and the element is halved until the Chebyshev
+series has converged, so layers a thousandth of a degree wide are found wherever
+they are. The unknown is the pressure *above the port that is open*, so that in
+the quasi-steady stretches the small drop itself, not its difference of two large
+pressures, is accurate.
+
+The start pressure solves `P(theta0 + L; P0) = P0`, a scalar monotone map, by
+Newton with the multiplier `exp(integral of df/dP)`.
+"""
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import exp, inf, log, pi
+
+import numpy as np
+from scipy.fft import dct
+from scipy.integrate import ODEintWarning, odeint
+
+from camring.metrics.independent.laws import OilLaw, opening, opening_kinks, orifice
+from camring.metrics.independent.machine import Machine, Window
+from camring.metrics.independent.shape import Piece, PitchCurve
+
+ORDER = 16
+NODES = np.cos(pi * np.arange(ORDER + 1) / ORDER)[::-1]
+FINEST = 1e-9  # shortest element, of the period
+
+
+class OrbitError(RuntimeError):
+    """No periodic pressure was found; the message says why."""
+
+
+@dataclass
+class Element:
+    """Chebyshev series of the unknown on [start, end]; pressure above `shift`."""
+
+    start: float
+    end: float
+    shift: float
+    series: np.ndarray
+    final: float  # the unknown at the end
+    exponent: float  # integral of df/dP
+
+
+class Chamber:
+    """Right-hand side dP/dtheta, cut into stretches without kinks."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.curve = PitchCurve(machine)
+        self.oil = OilLaw(machine.oil)
+        self.orifice = orifice(machine)
+        self.supply_opening = opening(machine.supply)
+        self.return_opening = opening(machine.return_)
+        self.pitch = 2 * pi / machine.lobes
+        self.scale = abs(machine.supply_pressure - machine.return_pressure)
+        self.pieces = self.curve.pieces()
+        self.reference = self._reference()
+        self.start = machine.supply.centre % machine.period
+        self.edges = self._edges()
+
+    def _reference(self) -> float:
+        given = self.machine.reference_radius
+        if not isinstance(given, str):
+            return float(given)
+        if given == "minimum":
+            return self.extreme_radii()[0]
+        nodes, weights = np.polynomial.legendre.leggauss(12)
+        total = 0.0
+        for piece in self.pieces:
+            half = (piece.end - piece.start) / 2
+            total += half * float(weights @ self.curve.jet(piece.start + half * (1 + nodes))[0])
+        return total / self.curve.period
+
+    def extreme_radii(self) -> tuple[float, float]:
+        at = np.concatenate([self.curve.turning_points(), [p.start for p in self.pieces]])
+        radii = self.curve.jet(at)[0]
+        return float(radii.min()), float(radii.max())
+
+    def _edges(self) -> np.ndarray:
+        """Kinks of one orbit from its start, both ends included."""
+        period = self.curve.period
+        around = [p.start for p in self.pieces]
+        for window in (self.machine.supply, self.machine.return_):
+            for kink in opening_kinks(window):
+                around += [
+                    window.centre + kink + self.pitch * k
+                    for k in range(self.machine.lobes // self.machine.repeats)
+                ]
+        inside = np.sort((np.asarray(around) - self.start) % period)
+        all_edges = np.concatenate([[0.0], inside, [period]])
+        keep = np.concatenate([[True], np.diff(all_edges) > 1e-13 * period])
+        all_edges = all_edges[keep]
+        all_edges[-1] = period
+        return self.start + all_edges
+
+    def nearest_centre(self, window: Window, angle: float) -> float:
+        return window.centre + self.pitch * round((angle - window.centre) / self.pitch)
+
+    def piece_at(self, angle: float) -> tuple[Piece, float]:
+        """The cam's polynomial at an angle and the turns to take off it."""
+        turns = np.floor((angle - self.pieces[0].start) / self.curve.period) * self.curve.period
+        home = angle - turns
+        starts = [p.start for p in self.pieces]
+        return self.pieces[max(int(np.searchsorted(starts, home, side="right")) - 1, 0)], turns
+
+    def slopes(
+        self, start: float, end: float, shift: float
+    ) -> Callable[[float, float], tuple[float, float]]:
+        """(y, theta) -> (dy/dtheta, P) on a stretch without kinks.
+
+        `P = shift + scale y`, or `P = shift e^y` for the aerated oil.
+        """
+        m, middle = self.machine, (start + end) / 2
+        piece, turns = self.piece_at(middle)
+        origin, scale, powers = piece.origin + turns, piece.scale, piece.coefficients[::-1]
+        area, fixed = m.piston_area, m.dead_volume - m.piston_area * self.reference
+        supply_at = self.nearest_centre(m.supply, middle)
+        return_at = self.nearest_centre(m.return_, middle)
+        supply_open, return_open = self.supply_opening, self.return_opening
+        flow, port, speed, leak = self.orifice, m.port_area, m.shaft_speed, m.leakage_coefficient
+        to_supply, to_return = m.supply_pressure - shift, m.return_pressure - shift
+        density, modulus, unit, case = (
+            m.oil.density,
+            m.oil.bulk_modulus,
+            self.scale,
+            m.case_pressure,
+        )
+
+        def motion(angle: float) -> tuple[float, float]:
+            x = (angle - origin) * scale
+            value = slope = 0.0
+            for power in powers:
+                slope = slope * x + value
+                value = value * x + power
+            return fixed + area * value, area * slope * scale
+
+        def stiff(y: float, angle: float) -> tuple[float, float]:
+            volume, swept = motion(angle)
+            above = unit * y
+            pressure = shift + above
+            net = -leak * (pressure - case) / speed - swept
+            share = supply_open(angle - supply_at)
+            if share > 0:
+                net += flow(port * share, to_supply - above, density) / speed
+            share = return_open(angle - return_at)
+            if share > 0:
+                net += flow(port * share, to_return - above, density) / speed
+            return modulus * net / (volume * unit), pressure
+
+        rho, rho_slope = self.oil.density, self.oil.density_slope
+        rho_supply, rho_return = rho(m.supply_pressure), rho(m.return_pressure)
+        rho_case = rho(case)
+
+        def aerated(y: float, angle: float) -> tuple[float, float]:
+            volume, swept = motion(angle)
+            above = shift * np.expm1(y)
+            pressure = shift + above
+            here = rho(pressure)
+            net = -(here + rho_case) / 2 * leak * (pressure - case) / speed - here * swept
+            share = supply_open(angle - supply_at)
+            if share > 0:
+                mean = (here + rho_supply) / 2
+                net += mean * flow(port * share, to_supply - above, mean) / speed
+            share = return_open(angle - return_at)
+            if share > 0:
+                mean = (here + rho_return) / 2
+                net += mean * flow(port * share, to_return - above, mean) / speed
+            return net / (volume * rho_slope(pressure) * pressure), pressure
+
+        return aerated if self.oil.aerated else stiff
+
+    def state(self, pressure: float, shift: float) -> float:
+        return log(pressure / shift) if self.oil.aerated else (pressure - shift) / self.scale
+
+    def pressure(self, state: np.ndarray, shift: np.ndarray) -> np.ndarray:
+        return shift * np.exp(state) if self.oil.aerated else shift + self.scale * state
+
+    def shift_at(self, start: float, end: float) -> float:
+        """Pressure of the wider open port on a stretch."""
+        m = self.machine
+        share = [
+            max(shape(at - self.nearest_centre(w, (start + end) / 2)) for at in (start, end))
+            for w, shape in ((m.supply, self.supply_opening), (m.return_, self.return_opening))
+        ]
+        return m.supply_pressure if share[0] > share[1] else m.return_pressure
+
+
+def _series(values: np.ndarray) -> np.ndarray:
+    """Chebyshev coefficients from values at the nodes."""
+    found = dct(values[::-1], type=1) / ORDER
+    found[0] /= 2
+    found[-1] /= 2
+    return found
+
+
+@dataclass
+class Stretch:
+    """Elements from one kink to the next, and the pressure they began with."""
+
+    pressure: float
+    elements: list[Element]
+
+
+def march(
+    chamber: Chamber,
+    pressure: float,
+    tolerance: float,
+    before: Sequence[Stretch] = (),
+    near: float = 0.0,
+) -> tuple[list[Stretch], float]:
+    """Follow the pressure over one period; stretches and the pressure at the end.
+
+    Once the pressure comes as `near` that of the orbit followed `before` at a
+    kink, the rest is the same and taken from there.
+    """
+    stretches: list[Stretch] = []
+    edges = chamber.edges
+    for index, (start, end) in enumerate(pairwise(edges)):
+        if before and abs(pressure - before[index].pressure) <= near:
+            stretches += before[index:]
+            return stretches, _end_pressure(chamber, before[-1].elements[-1])
+        elements = _follow(chamber, float(start), float(end), pressure, tolerance)
+        stretches.append(Stretch(pressure, elements))
+        pressure = _end_pressure(chamber, elements[-1])
+    return stretches, pressure
+
+
+def _end_pressure(chamber: Chamber, element: Element) -> float:
+    return float(chamber.pressure(np.asarray(element.final), np.asarray(element.shift)))
+
+
+def _follow(
+    chamber: Chamber, start: float, end: float, pressure: float, tolerance: float
+) -> list[Element]:
+    """Integrate from one kink to the next in elements that the series resolves."""
+    finest, elements = FINEST * chamber.curve.period, []
+    rtol = max(tolerance / 10, 1e-13)
+    atol = rtol * 1e-4
+    at, step = start, end - start
+    shift = chamber.shift_at(start, end)
+    slopes = chamber.slopes(start, end, shift)
+    state = chamber.state(pressure, shift)
+
+    def rhs(y: np.ndarray, angle: float) -> float:
+        return slopes(float(y[0]), angle)[0]
+
+    while at < end:
+        to = end if at + 1.0001 * step >= end else at + step
+        nodes = at + (to - at) / 2 * (NODES + 1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ODEintWarning)  # the message is read instead
+            values, report = odeint(
+                rhs, state, nodes, rtol=rtol, atol=atol, mxstep=20000, full_output=True
+            )
+        values = values[:, 0]
+        good = report["message"] == "Integration successful." and bool(np.all(np.isfinite(values)))
+        if not good and to - at < finest:
+            raise OrbitError(f"LSODA failed at {at:.6g} rad: {report['message']}")
+        series = _series(values)
+        tail = float(np.max(np.abs(series[-3:]))) if good else inf
+        if tail > 3 * rtol * float(np.max(np.abs(values))) + 10 * atol and to - at >= finest:
+            step = (to - at) / 2
+            continue
+        elements.append(
+            Element(at, to, shift, series, float(values[-1]), _exponent(slopes, nodes, values))
+        )
+        state, at = float(values[-1]), to
+        step *= 2
+    return elements
+
+
+_CLENSHAW_CURTIS = np.array(
+    [
+        sum(
+            (0.5 if k in (0, ORDER) else 1.0)
+            * 2
+            / ORDER
+            * np.cos(pi * j * k / ORDER)
+            * (0.0 if k % 2 else 2 / (1 - k * k))
+            for k in range(ORDER + 1)
+        )
+        * (0.5 if j in (0, ORDER) else 1.0)
+        for j in range(ORDER + 1)
+    ]
+)
+
+
+def _exponent(
+    slopes: Callable[[float, float], tuple[float, float]], nodes: np.ndarray, values: np.ndarray
+) -> float:
+    """Integral of d(dy/dtheta)/dy along the orbit, central differences, Clenshaw-Curtis."""
+    small = 1e-6
+    rates = [
+        (slopes(y + small, t)[0] - slopes(y - small, t)[0]) / (2 * small)
+        for y, t in zip(values.tolist(), nodes.tolist(), strict=True)
+    ]
+    return float(_CLENSHAW_CURTIS @ np.asarray(rates)) * (nodes[-1] - nodes[0]) / 2
+
+
+@dataclass
+class Orbit:
+    """A periodic pressure, readable at any angle."""
+
+    chamber: Chamber
+    elements: list[Element]
+    residual: float  # pressure after a period minus before, Pa
+    multiplier: float  # of a pressure disturbance over a period
+
+    def __post_init__(self) -> None:
+        self._starts = np.array([e.start for e in self.elements])
+        self._ends = np.array([e.end for e in self.elements])
+        self._shifts = np.array([e.shift for e in self.elements])
+        self._series = np.stack([e.series for e in self.elements])
+
+    @property
+    def edges(self) -> np.ndarray:
+        return np.append(self._starts, self._ends[-1])
+
+    def state(self, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The unknown and its shift, at any angles."""
+        first, period = self._starts[0], self.chamber.curve.period
+        home = first + np.mod(np.asarray(angle, float) - first, period)
+        index = np.clip(np.searchsorted(self._starts, home, side="right") - 1, 0, None)
+        start, end = self._starts[index], self._ends[index]
+        x = (2 * home - start - end) / (end - start)
+        series = self._series[index]
+        one, two = np.zeros_like(x), np.zeros_like(x)
+        for k in range(ORDER, 0, -1):
+            one, two = series[..., k] + 2 * x * one - two, one
+        return series[..., 0] + x * one - two, self._shifts[index]
+
+    def pressure(self, angle: np.ndarray) -> np.ndarray:
+        return self.chamber.pressure(*self.state(angle))
+
+
+def periodic_orbit(machine: Machine, tolerance: float = 1e-10) -> Orbit:
+    """Solve for the periodic pressure, model.md section 3."""
+    chamber = Chamber(machine)
+    pressure, allowed = machine.supply_pressure, 3 * tolerance * chamber.scale
+    best: Orbit | None = None
+    stretches: list[Stretch] = []
+    slack = 0.0
+    for _ in range(12):
+        near = 0.01 * slack * tolerance * chamber.scale
+        stretches, after = march(chamber, pressure, tolerance, stretches, near)
+        elements = [element for stretch in stretches for element in stretch.elements]
+        multiplier = exp(sum(e.exponent for e in elements))
+        orbit = Orbit(chamber, elements, after - pressure, multiplier)
+        if best is None or abs(orbit.residual) < abs(best.residual):
+            best = orbit
+        slack = max(1 - multiplier, 1e-300)
+        if abs(orbit.residual) <= allowed * min(1.0, slack):
+            return orbit
+        if slack < 1e-12:
+            raise OrbitError(
+                "the chamber neither leaks nor meets an open port: any pressure is periodic"
+            )
+        if chamber.oil.aerated:
+            pressure *= exp(min(max(log(after / pressure) / slack, -3.0), 3.0))
+        else:
+            pressure += orbit.residual / slack
+    if best is None or abs(best.residual) > 1e3 * allowed:
+        raise OrbitError("Newton on the period map did not converge")
+    return best

@@ -1,0 +1,298 @@
+"""Every number of model.md section 10 from a periodic orbit, on the second road."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from math import lcm, pi, sqrt
+
+import numpy as np
+
+from camring.metrics.independent.machine import Machine
+from camring.metrics.independent.orbit import Orbit
+from camring.metrics.independent.shape import Jet
+
+GAUSS = np.polynomial.legendre.leggauss(20)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What the cam and the oil press a piston to, at some angles."""
+
+    jet: Jet
+    lift: np.ndarray
+    pressure: np.ndarray
+    force: np.ndarray
+    normal_force: np.ndarray
+    undercut: np.ndarray
+    contact_torque: np.ndarray  # lost in roller and side friction
+    torque: np.ndarray
+
+
+def undercut_factor(machine: Machine, jet: Jet) -> np.ndarray:
+    r, r1, r2, _ = jet
+    curvature = (r**2 + 2 * r1**2 - r * r2) / (r**2 + r1**2) ** 1.5
+    return 1 + curvature * machine.roller_radius
+
+
+def motion(orbit: Orbit, angle: np.ndarray, inside: np.ndarray | None = None) -> Motion:
+    m, w = orbit.chamber.machine, orbit.chamber.machine.shaft_speed
+    jet = orbit.chamber.curve.jet(angle, inside)
+    r, r1, r2, _ = jet
+    pressure = orbit.pressure(angle)
+    force = (
+        m.piston_area * (pressure - m.case_pressure)
+        - m.piston_mass * w**2 * r2
+        - m.viscous_damping * w * r1
+    )
+    normal = force * np.hypot(1, r1 / r)
+    undercut = undercut_factor(m, jet)
+    lost = m.roller_friction * np.maximum(normal, 0) * undercut * np.hypot(r, r1)
+    lost = lost + m.side_friction * np.abs(force * r1 / r) * np.abs(r1)
+    lift = r - orbit.chamber.reference
+    return Motion(jet, lift, pressure, force, normal, undercut, lost, force * r1 - lost)
+
+
+def contact_stress(machine: Machine, state: Motion) -> np.ndarray:
+    m = machine
+    compliance = (1 - m.ring_poisson**2) / m.ring_modulus
+    compliance += (1 - m.roller_poisson**2) / m.roller_modulus
+    radius = m.roller_radius * state.undercut
+    load = np.maximum(state.normal_force, 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.sqrt(load / (compliance * pi * m.roller_length * radius))
+
+
+def flows(orbit: Orbit, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Supply and return into a chamber, leakage out: volumes a second, or masses if aerated."""
+    chamber, m = orbit.chamber, orbit.chamber.machine
+    states, shifts = orbit.state(angle)
+    rho, aerated = chamber.oil.density, chamber.oil.aerated
+    found = np.empty((3, len(angle)))
+    for k, (at, y, shift) in enumerate(
+        zip(angle.tolist(), states.tolist(), shifts.tolist(), strict=True)
+    ):
+        above = shift * float(np.expm1(y)) if aerated else chamber.scale * y
+        pressure = shift + above
+        ports = (
+            (m.supply, chamber.supply_opening, m.supply_pressure),
+            (m.return_, chamber.return_opening, m.return_pressure),
+        )
+        for row, (window, shape, port) in enumerate(ports):
+            share = shape(at - chamber.nearest_centre(window, at))
+            density = (rho(pressure) + rho(port)) / 2
+            flow = chamber.orifice(m.port_area * share, port - shift - above, density)
+            found[row, k] = flow * density if aerated else flow
+        leak = m.leakage_coefficient * (pressure - m.case_pressure)
+        found[2, k] = leak * ((rho(pressure) + rho(m.case_pressure)) / 2 if aerated else 1.0)
+    return found[0], found[1], found[2]
+
+
+def extremes(
+    function: Callable[[np.ndarray, np.ndarray], np.ndarray], edges: np.ndarray
+) -> tuple[float, float]:
+    """Smallest and largest value over intervals on which the function is smooth.
+
+    `function(angle, inside)`: `inside` is an angle of the same interval, for
+    functions that jump at an edge. Sampled, then the best brackets are zoomed in.
+    """
+    low, high = edges[:-1], edges[1:]
+    keep = high > low
+    low, high = low[keep], high[keep]
+    middle = (low + high) / 2
+    grid = np.linspace(0, 1, 13)
+    at = low[:, None] + (high - low)[:, None] * grid
+    value = function(at.ravel(), np.repeat(middle, len(grid))).reshape(at.shape)
+    found = []
+    for sign in (-1.0, 1.0):
+        height = sign * value
+        best = np.argmax(height, axis=1)
+        chosen = np.argsort(np.max(height, axis=1))[::-1][:12]
+        top = float(np.max(height))
+        for row in chosen:
+            a = at[row, max(best[row] - 1, 0)]
+            b = at[row, min(best[row] + 1, len(grid) - 1)]
+            for _ in range(6):
+                fine = np.linspace(a, b, 17)
+                here = sign * function(fine, np.full(17, middle[row]))
+                peak = int(np.argmax(here))
+                top = max(top, float(here[peak]))
+                a, b = fine[max(peak - 1, 0)], fine[min(peak + 1, 16)]
+        found.append(sign * top)
+    return found[0], found[1]
+
+
+def _split(edges: np.ndarray, longest: float) -> np.ndarray:
+    """Edges with long intervals divided."""
+    parts = [
+        np.linspace(a, b, int(np.ceil((b - a) / longest)) + 1)[:-1] for a, b in pairwise(edges)
+    ]
+    return np.append(np.concatenate(parts), edges[-1])
+
+
+def _sign_changes(function: Callable[[np.ndarray], np.ndarray], edges: np.ndarray) -> np.ndarray:
+    """Zeros of a continuous function, bracketed on a sampled mesh and bisected."""
+    at = np.unique(
+        np.concatenate(
+            [a + (edges[1:] - edges[:-1]) * a_ for a, a_ in ((edges[:-1], k / 8) for k in range(9))]
+        )
+    )
+    sign = np.signbit(function(at))
+    here = np.flatnonzero(sign[1:] != sign[:-1])
+    low, high, left = at[here], at[here + 1], sign[here]
+    for _ in range(50):
+        middle = (low + high) / 2
+        same = np.signbit(function(middle)) == left
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return (low + high) / 2
+
+
+class Quadrature:
+    """Gauss points over one orbit, fine enough for the highest order asked."""
+
+    def __init__(self, edges: np.ndarray, highest_order: int) -> None:
+        edges = _split(edges, 8.0 / max(highest_order, 1))
+        nodes, weights = GAUSS
+        half = np.diff(edges) / 2
+        self.angle = ((edges[:-1] + half)[:, None] + half[:, None] * nodes).ravel()
+        self.weight = (half[:, None] * weights).ravel()
+        self.length = edges[-1] - edges[0]
+
+    def mean(self, values: np.ndarray) -> float:
+        return float(self.weight @ values) / self.length
+
+    def harmonics(self, values: np.ndarray, every: int, highest: int) -> np.ndarray:
+        """Complex Fourier coefficients of the orders `every, 2 every, ...` up to the highest."""
+        turn = np.exp(-1j * every * self.angle)
+        term = self.weight * values / self.length
+        found = []
+        for _ in range(highest // every):
+            term = term * turn
+            found.append(term.sum())
+        return np.asarray(found)
+
+
+def total_torque(orbit: Orbit, angle: np.ndarray) -> np.ndarray:
+    """Torque of the shaft: the sum over all pistons."""
+    m = orbit.chamber.machine
+    total = np.zeros_like(np.asarray(angle, float))
+    distinct = lcm(m.pistons, m.repeats) // m.repeats
+    for k in range(distinct):
+        total += motion(orbit, angle + m.period * k / distinct).torque
+    return total * (m.pistons // distinct)
+
+
+def geometry_results(orbit: Orbit) -> dict[str, float]:
+    chamber, m, w = orbit.chamber, orbit.chamber.machine, orbit.chamber.machine.shaft_speed
+    curve = chamber.curve
+    smallest, largest = chamber.extreme_radii()
+    turning = curve.turning_points()
+    radii = curve.jet(np.append(turning, turning[0] + m.period))[0] if len(turning) else np.zeros(2)
+    rises = float(np.sum(np.maximum(np.diff(radii), 0))) * m.repeats
+    knots = np.array([p.start for p in chamber.pieces] + [chamber.pieces[-1].end])
+
+    def of(change: Callable[[Jet], np.ndarray]) -> tuple[float, float]:
+        return extremes(lambda at, inside: change(curve.jet(at, inside)), knots)
+
+    quadrature = Quadrature(knots, 1)
+    jerk = curve.jet(quadrature.angle)[3]
+    mean_volume = m.dead_volume + m.piston_area * (
+        quadrature.mean(curve.jet(quadrature.angle)[0]) - chamber.reference
+    )
+    stiffness = m.oil.bulk_modulus * m.piston_area**2 / mean_volume
+    stroke = largest - smallest
+    largest_of = lambda change: max(abs(x) for x in of(change))  # noqa: E731
+    return {
+        "displacement": m.pistons * rises * m.piston_area,
+        "stroke": stroke,
+        "min_undercut_factor": of(lambda jet: undercut_factor(m, jet))[0],
+        "max_pressure_angle": float(np.arctan(largest_of(lambda jet: jet[1] / jet[0]))),
+        "max_velocity": w * largest_of(lambda jet: jet[1]),
+        "max_acceleration": w**2 * largest_of(lambda jet: jet[2]),
+        "max_jerk": w**3 * largest_of(lambda jet: jet[3]),
+        "min_volume": m.dead_volume + m.piston_area * (smallest - chamber.reference),
+        "natural_frequency": sqrt(stiffness / m.piston_mass),
+        "damping_ratio": m.viscous_damping / (2 * sqrt(m.piston_mass * stiffness)),
+        "jerk_objective": quadrature.mean((jerk / (stroke * m.lobes**3)) ** 2),
+    }
+
+
+def results(orbit: Orbit, harmonics: int) -> dict[str, float]:
+    """All results of model.md section 10, SI."""
+    chamber, m, w = orbit.chamber, orbit.chamber.machine, orbit.chamber.machine.shaft_speed
+    found = geometry_results(orbit)
+    edges = orbit.edges
+    if m.roller_friction or m.side_friction:
+        force = _sign_changes(lambda at: motion(orbit, at).force, edges)
+        slope = _sign_changes(lambda at: chamber.curve.jet(at)[1], edges)
+        edges = np.sort(np.concatenate([edges, force, slope]))
+    quad = Quadrature(edges, harmonics)
+    state = motion(orbit, quad.angle)
+    supply, back, leak = flows(orbit, quad.angle)
+    drop = m.supply_pressure - m.return_pressure
+    surviving = lcm(m.pistons, m.repeats)
+    speed = w * state.jet[1]
+    contact = w * state.contact_torque
+    if chamber.oil.aerated:
+        level = chamber.oil.enthalpy(state.pressure)
+        at_supply, at_return = chamber.oil.enthalpy(
+            np.array([m.supply_pressure, m.return_pressure])
+        )
+        through = supply * (at_supply - level) + back * (at_return - level)
+        leaking, compressing = leak * (level - at_return), np.zeros_like(leak)
+        input_power = m.pistons * quad.mean(supply) * float(at_supply - at_return)
+        supply = supply / chamber.oil.density(m.supply_pressure)
+    else:
+        above = state.pressure - m.return_pressure
+        through = supply * (drop - above) - back * above
+        leaking = leak * above
+        # Integral of (P-Pt) V/beta dP by parts: the balance of power is then a true check.
+        compressing = -m.piston_area * speed * above**2 / (2 * m.oil.bulk_modulus)
+        input_power = m.pistons * quad.mean(supply) * drop
+    torque = m.pistons * quad.mean(state.torque)
+    supply_flow = m.pistons * quad.mean(supply)
+    ideal = drop * found["displacement"] / (2 * pi)
+    torque_orders = m.pistons * quad.harmonics(state.torque, surviving, harmonics)
+    flow_orders = m.pistons * quad.harmonics(supply, surviving, harmonics)
+    gauge = state.pressure - m.return_pressure
+    pressure_orders = quad.harmonics(gauge, m.repeats, harmonics)
+    size = lambda orders: float(np.sum(np.abs(orders) ** 2))  # noqa: E731
+    low_pressure, high_pressure = extremes(lambda at, _: orbit.pressure(at), orbit.edges)
+    low_torque, high_torque = torque_extremes(orbit)
+    output = torque * w
+    found |= {
+        "mean_torque": torque,
+        "torque_ripple": sqrt(size(torque_orders)) / abs(torque),
+        "torque_ripple_peak_to_peak": (high_torque - low_torque) / abs(torque),
+        "pressure_ripple": sqrt(size(pressure_orders)) / abs(quad.mean(gauge)),
+        "flow_ripple": sqrt(size(flow_orders)) / abs(supply_flow),
+        "ideal_torque": ideal,
+        "supply_flow": supply_flow,
+        "efficiency": output / input_power,
+        "volumetric_efficiency": found["displacement"] * w / (2 * pi * supply_flow),
+        "hydromechanical_efficiency": torque / ideal,
+        "input_power": input_power,
+        "output_power": output,
+        "throttling_loss": m.pistons * quad.mean(through),
+        "leakage_loss": m.pistons * quad.mean(leaking),
+        "friction_loss": m.pistons * quad.mean(m.viscous_damping * speed**2 + contact),
+        "compression_loss": m.pistons * quad.mean(compressing),
+        "min_pressure": low_pressure,
+        "max_pressure": high_pressure,
+        "min_contact_force": extremes(lambda at, i: motion(orbit, at, i).force, orbit.edges)[0],
+        "max_contact_stress": extremes(
+            lambda at, i: contact_stress(m, motion(orbit, at, i)), orbit.edges
+        )[1],
+        "spectral_pressure": size(pressure_orders) / drop**2,
+        "spectral_torque": size(torque_orders) / ideal**2,
+    }
+    return found
+
+
+def torque_extremes(orbit: Orbit) -> tuple[float, float]:
+    """Smallest and largest torque of the shaft, over its own short period."""
+    m = orbit.chamber.machine
+    short = 2 * pi / lcm(m.pistons, m.repeats)
+    first = orbit.edges[0]
+    folded = first + np.sort(np.mod(orbit.edges[:-1] - first, short))
+    folded = np.append(folded, first + short)
+    return extremes(lambda at, _: total_torque(orbit, at), np.unique(folded))
