@@ -1,0 +1,121 @@
+"""Compiled programs kept from one run to the next.
+
+Compiling takes seconds, loading what was compiled takes hundredths of one. What
+is kept is machine code that will be run, so it lives in a folder that only its
+owner can write (mode 0700), and a folder that others could have written to is
+not used. Where nothing can be kept (read-only home, full disk) every run
+compiles anew and nothing else changes.
+
+`CAMRING_CACHE=off` switches it off; `CAMRING_CACHE=FOLDER` puts it elsewhere.
+"""
+
+import atexit
+import fcntl
+import hashlib
+import os
+import platform
+import stat
+import warnings
+from pathlib import Path
+
+SWITCH = "CAMRING_CACHE"
+MARKER_SUFFIX = ".running"
+
+
+def keep_compiled_programs() -> Path | None:
+    """Tells JAX where to keep them; the folder, or None when there is none to use.
+
+    Call it before the first compilation.
+    """
+    folder = private_folder()
+    if folder is None:
+        return None
+    _discard_cut_off(folder)
+    _mark(folder)
+
+    import jax
+
+    jax.config.update("jax_compilation_cache_dir", str(folder))
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
+    jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
+    # An entry that cannot be read or written costs a compilation, not a word.
+    jax.config.update("jax_raise_persistent_cache_errors", False)
+    warnings.filterwarnings("ignore", message=".*persistent compilation cache.*")
+    return folder
+
+
+def private_folder() -> Path | None:
+    """The folder, made if need be, when it is this user's alone and can be written."""
+    choice = os.environ.get(SWITCH, "")
+    if choice.lower() in ("off", "0", "no", "false"):
+        return None
+    if choice:
+        base = Path(choice)
+    else:
+        home = os.environ.get("XDG_CACHE_HOME", "")
+        # The specification: a relative XDG_CACHE_HOME is to be ignored.
+        parent = Path(home) if os.path.isabs(home) else Path.home() / ".cache"
+        base = parent / "camring"
+    folder = base / f"compiled-{_this_machine()}"
+    try:
+        base.parent.mkdir(parents=True, exist_ok=True)
+        for level in (base, folder):
+            level.mkdir(mode=0o700, exist_ok=True)
+            if not _private(level):
+                return None
+    except (OSError, RuntimeError):
+        return None
+    return folder if os.access(folder, os.W_OK | os.X_OK) else None
+
+
+def _private(folder: Path) -> bool:
+    status = folder.lstat()
+    return (
+        stat.S_ISDIR(status.st_mode)
+        and status.st_uid == os.getuid()
+        and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+    )
+
+
+def _this_machine() -> str:
+    """Machine code is made for one kind of processor; homes are shared among several."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(errors="replace").splitlines()
+        features = next((line for line in lines if line.startswith(("flags", "Features"))), "")
+    except OSError:
+        features = platform.processor()
+    return hashlib.sha256(f"{platform.machine()} {features}".encode()).hexdigest()[:12]
+
+
+def _mark(folder: Path) -> None:
+    """Leaves a locked file while this process runs; see `_discard_cut_off`."""
+    marker = folder / f"{os.getpid()}{MARKER_SUFFIX}"
+    try:
+        descriptor = os.open(marker, os.O_RDWR | os.O_CREAT | os.O_TRUNC, 0o600)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return
+    atexit.register(marker.unlink, missing_ok=True)
+
+
+def _discard_cut_off(folder: Path) -> None:
+    """Drops what a killed process may have written by half.
+
+    JAX writes entries in place, and never replaces one. A process that was
+    killed leaves its marker without a lock on it; whatever is younger than such
+    a marker may be cut off.
+    """
+    try:
+        for marker in folder.glob(f"*{MARKER_SUFFIX}"):
+            with marker.open("rb") as file:
+                try:
+                    fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    continue  # its process is alive
+                since = marker.stat().st_mtime
+                for entry in folder.iterdir():
+                    if entry.suffix != MARKER_SUFFIX and entry.stat().st_mtime >= since:
+                        entry.unlink(missing_ok=True)
+                marker.unlink(missing_ok=True)
+    except OSError:
+        return

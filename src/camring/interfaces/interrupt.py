@@ -1,0 +1,64 @@
+"""Ctrl-C during long work: noticed at once, acted on at a safe place."""
+
+import os
+import signal
+import threading
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, wait
+from types import FrameType, TracebackType
+from typing import Any, TypeVar
+
+from camring.interfaces.errors import CamringError
+
+Result = TypeVar("Result")
+
+EXIT_CODE = 130
+PATIENCE = 0.1  # seconds between two looks
+
+
+class Interrupted(CamringError):
+    """The user, or the system, asked the program to stop; nothing was lost."""
+
+    exit_code = EXIT_CODE
+
+
+class Interruption:
+    """While its block runs, SIGINT and SIGTERM set a flag instead of raising anywhere.
+
+    A second signal ends the process on the spot, which loses nothing either.
+    Outside the main thread it does nothing, as signals cannot be had there.
+    """
+
+    def __init__(self) -> None:
+        self._requested = threading.Event()
+        self._former: dict[int, Any] = {}
+
+    def __enter__(self) -> "Interruption":
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM):
+                self._former[number] = signal.signal(number, self._notice)
+        return self
+
+    def __exit__(
+        self, _: type[BaseException] | None, __: BaseException | None, ___: TracebackType | None
+    ) -> None:
+        for number, handler in self._former.items():
+            signal.signal(number, handler)
+
+    def run(self, executor: Executor, function: Callable[..., Result], *arguments: Any) -> Result:
+        """What the function returns; `Interrupted` when a signal comes first."""
+        self.check()
+        future: Future[Result] = executor.submit(function, *arguments)
+        while not wait([future], timeout=PATIENCE).done:
+            self.check()
+        return future.result()
+
+    def check(self) -> None:
+        """Raises `Interrupted` when a signal has come."""
+        if self._requested.is_set():
+            raise Interrupted("Stopped.")
+
+    def _notice(self, _: int, __: FrameType | None) -> None:
+        if self._requested.is_set():
+            os._exit(EXIT_CODE)
+        self._requested.set()
