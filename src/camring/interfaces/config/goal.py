@@ -1,0 +1,29 @@
+"""The tables `[objective]` and `[constraints]` as what is wanted of the motor."""
+
+from camring.interfaces.config.tables import FileTables
+from camring.objective.constraints import Constraints
+from camring.objective.objective import Goal, Weights
+
+WEIGHTS = (
+    "torque_ripple",
+    "pressure_ripple",
+    "efficiency",
+    "spectrum",
+    "jerk",
+    "spectral_pressure",
+    "spectral_torque",
+    "penalty",
+)
+
+
+def build_goal(tables: FileTables) -> Goal:
+    """Weights, constraints and number of harmonics of a file."""
+    limits = tables.constraints.model_dump()
+    if limits["min_pressure"] is None:
+        limits["min_pressure"] = tables.fluid.vapour_pressure  # type: ignore[attr-defined]
+    weights = {name: getattr(tables.objective, name) for name in WEIGHTS}
+    return Goal(
+        weights=Weights(**weights),
+        constraints=Constraints(**limits),
+        harmonics=tables.objective.harmonics,
+    )

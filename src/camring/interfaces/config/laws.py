@@ -1,0 +1,158 @@
+"""The exchangeable laws of the file, read off the law classes themselves.
+
+A law is one final class in `physics` or `geometry`. Its name in the file is its
+class's name without the parent's noun (`ConstantFluid` is `law = "constant"`,
+`LaminarTurbulentOrifice` is `orifice = "laminar-turbulent"`); its keys are its
+fields, with the units of their annotations. A `Slot` says where the keys of one
+kind of law stand. So a new law class is in the file, in the design space and in
+the parameter reference at once; only what cannot be read off it (limits of
+sanity, meaning, an example) may be added to `KNOWN_FIELDS`.
+"""
+
+import inspect
+import pkgutil
+import re
+from dataclasses import MISSING, dataclass, field, fields
+from functools import cache
+from importlib import import_module
+from typing import Any, get_args, get_type_hints
+
+import camring.geometry
+import camring.physics
+from camring.geometry.valve_plate import AbstractWindow
+from camring.interfaces.config.entries import Entry, Number, Numbers
+from camring.physics.fluid import AbstractFluid
+from camring.physics.friction import AbstractFriction
+from camring.physics.leakage import AbstractLeakage
+from camring.physics.orifice import AbstractOrifice
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A place in the motor for one kind of law.
+
+    Attributes
+    ----------
+    parent
+        The abstract class of the laws.
+    table, chooser
+        The key that names the law: `chooser` in `[table]`.
+    leaf
+        Where the law stands in the `System`.
+    default
+        The law of a file that names none: the derivation's.
+    keys
+        File keys of fields that are called otherwise there, as paths.
+    """
+
+    parent: type
+    table: str
+    chooser: str
+    leaf: str
+    default: str
+    keys: dict[str, str] = field(default_factory=dict, hash=False)
+
+
+SLOTS = (
+    Slot(AbstractFluid, "fluid", "law", "fluid", "constant"),
+    Slot(AbstractOrifice, "motor.valve_plate", "orifice", "motor.orifice", "turbulent"),
+    Slot(AbstractWindow, "motor.valve_plate", "shape", "motor.valve_plate.window", "linear"),
+    Slot(
+        AbstractLeakage,
+        "motor",
+        "leakage",
+        "motor.leakage",
+        "constant",
+        {"coefficient": "motor.leakage_coefficient"},
+    ),
+    Slot(
+        AbstractFriction,
+        "motor",
+        "friction",
+        "motor.friction",
+        "viscous",
+        {"damping": "motor.viscous_damping"},
+    ),
+)
+
+# File defaults where the class has none; limits of sanity, meaning and example.
+FILE_DEFAULTS = {"motor.valve_plate.ramp": 1.0}
+
+KNOWN_FIELDS: dict[str, tuple[str, str, float, float]] = {
+    "fluid.density": ("the density of the oil", '"870 kg/m^3"', 1.0, 3e4),
+    "fluid.bulk_modulus": ("the bulk modulus of the oil", '"1.4 GPa"', 1e5, 1e12),
+    "fluid.vapour_pressure": ("the absolute vapour pressure", '"3 kPa"', 0.0, 1e8),
+    "fluid.transition_pressure": (
+        "the pressure drop below which port flow is laminar",
+        '"1 bar"',
+        1.0,
+        1e8,
+    ),
+    "motor.valve_plate.discharge_coefficient": ("the discharge coefficient", "0.65", 1e-6, 2.0),
+    "motor.valve_plate.ramp": ("the ramps' share of a window", "0.35", 1e-4, 1.0),
+    "motor.leakage_coefficient": (
+        "a chamber's leakage for each unit of pressure",
+        '"1.6e-13 m^3/(s*Pa)"',
+        0.0,
+        1e-4,
+    ),
+    "motor.viscous_damping": ("a piston's viscous damping", '"8.5 N*s/m"', 0.0, 1e7),
+}
+
+
+@cache
+def laws_of(slot: Slot) -> dict[str, type]:
+    """Every law of a kind by its name in the file, the default first."""
+    _import_rooms()
+    found = {law_name(law, slot.parent): law for law in _finals(slot.parent)}
+    return {slot.default: found.pop(slot.default), **dict(sorted(found.items()))}
+
+
+def law_name(law: type, parent: type) -> str:
+    """`LaminarTurbulentOrifice` among the `AbstractOrifice`s is "laminar-turbulent"."""
+    noun = parent.__name__.removeprefix("Abstract")
+    words = re.findall(r"[A-Z][a-z0-9]*", law.__name__.removesuffix(noun))
+    return "-".join(words).lower()
+
+
+def law_keys(slot: Slot, law: type) -> dict[str, tuple[str, Entry, Any]]:
+    """What each field of a law takes: name -> (path in the file, entry, default or `...`)."""
+    hints = get_type_hints(law, include_extras=True)
+    keys = {}
+    for each in fields(law):
+        path = slot.keys.get(each.name, f"{slot.table}.{each.name}")
+        default = each.default if each.default is not MISSING else ...
+        default = FILE_DEFAULTS.get(path, default)
+        keys[each.name] = path, _entry(path, hints[each.name], f"{slot.leaf}.{each.name}"), default
+    return keys
+
+
+def _entry(path: str, annotation: Any, leaf: str) -> Entry:
+    if not hasattr(annotation, "__metadata__"):
+        raise TypeError(f"{leaf} has no unit in its annotation, so no file can give it")
+    array, unit = get_args(annotation)[:2]
+    plain = path.rsplit(".", 1)[1].replace("_", " ")
+    meaning, example, low, high = KNOWN_FIELDS.get(
+        path, (f"the {plain}", "1" if unit == "1" else f'"1 {unit}"', -1e15, 1e15)
+    )
+    number = Number(meaning, example, unit=unit, low=low, high=high, leaves=(leaf,))
+    if getattr(array, "dim_str", "") == "":
+        return number
+    return Numbers(f"{meaning}, a list", f"[{example}, ...]", item=number, leaves=(leaf,))
+
+
+@cache
+def _import_rooms() -> None:
+    for room in (camring.geometry, camring.physics):
+        for module in pkgutil.iter_modules(room.__path__, room.__name__ + "."):
+            import_module(module.name)
+
+
+def _finals(parent: type) -> list[type]:
+    found: list[type] = []
+    children: list[type] = parent.__subclasses__()
+    for child in children:
+        found += _finals(child)
+        if not inspect.isabstract(child):
+            found.append(child)
+    return found

@@ -1,0 +1,329 @@
+"""Text with a unit to SI numbers, `"250 bar"` to 2.5e7, and back.
+
+A small grammar of our own reads products and powers of unit names, so no
+user text reaches an evaluator. The units an engineer writes every day are in a
+table; any other name is asked of pint, which is slow to import and therefore
+loaded only then. Angle counts as a dimension: a speed is given in rpm or
+rad/s, and `"2 Hz"`, which could mean either, is refused.
+"""
+
+import re
+from difflib import get_close_matches
+from functools import cache
+from math import isfinite, pi
+from typing import NamedTuple
+
+BASES = ("m", "kg", "s", "rad", "K")
+LONGEST_TEXT = 80
+DEEPEST_NESTING = 8
+
+
+class UnitError(ValueError):
+    """A unit that does not exist or does not fit, told as the end of a sentence."""
+
+
+class Unit(NamedTuple):
+    """So many SI units with these powers of metre, kilogram, second, radian, kelvin."""
+
+    factor: float
+    powers: tuple[int, ...] = (0, 0, 0, 0, 0)
+    offset: float = 0.0  # a temperature scale's zero, K
+
+    def times(self, other: "Unit", sign: int = 1) -> "Unit":
+        powers = tuple(a + sign * b for a, b in zip(self.powers, other.powers, strict=True))
+        return Unit(self.factor * other.factor**sign, powers)
+
+    def power(self, exponent: int) -> "Unit":
+        return Unit(self.factor**exponent, tuple(exponent * p for p in self.powers))
+
+
+def _unit(factor: float, m: int = 0, kg: int = 0, s: int = 0, rad: int = 0, K: int = 0) -> Unit:
+    return Unit(factor, (m, kg, s, rad, K))
+
+
+_LENGTH, _FORCE, _PRESSURE = dict(m=1), dict(m=1, kg=1, s=-2), dict(m=-1, kg=1, s=-2)
+_ENERGY, _POWER = dict(m=2, kg=1, s=-2), dict(m=2, kg=1, s=-3)
+
+# Compared with pint's definitions in tests/interfaces/test_units.py.
+EVERYDAY: dict[str, Unit] = {
+    "m": _unit(1, **_LENGTH),
+    "mm": _unit(1e-3, **_LENGTH),
+    "cm": _unit(1e-2, **_LENGTH),
+    "dm": _unit(1e-1, **_LENGTH),
+    "um": _unit(1e-6, **_LENGTH),
+    "µm": _unit(1e-6, **_LENGTH),
+    "L": _unit(1e-3, m=3),
+    "l": _unit(1e-3, m=3),
+    "mL": _unit(1e-6, m=3),
+    "ml": _unit(1e-6, m=3),
+    "kg": _unit(1, kg=1),
+    "g": _unit(1e-3, kg=1),
+    "s": _unit(1, s=1),
+    "ms": _unit(1e-3, s=1),
+    "min": _unit(60, s=1),
+    "h": _unit(3600, s=1),
+    "Hz": _unit(1, s=-1),
+    "rad": _unit(1, rad=1),
+    "deg": _unit(pi / 180, rad=1),
+    "°": _unit(pi / 180, rad=1),
+    "rev": _unit(2 * pi, rad=1),
+    "rpm": _unit(2 * pi / 60, rad=1, s=-1),
+    "N": _unit(1, **_FORCE),
+    "kN": _unit(1e3, **_FORCE),
+    "Pa": _unit(1, **_PRESSURE),
+    "kPa": _unit(1e3, **_PRESSURE),
+    "MPa": _unit(1e6, **_PRESSURE),
+    "GPa": _unit(1e9, **_PRESSURE),
+    "mbar": _unit(1e2, **_PRESSURE),
+    "bar": _unit(1e5, **_PRESSURE),
+    "J": _unit(1, **_ENERGY),
+    "W": _unit(1, **_POWER),
+    "kW": _unit(1e3, **_POWER),
+    "cSt": _unit(1e-6, m=2, s=-1),
+    "cP": _unit(1e-3, m=-1, kg=1, s=-1),
+    "K": _unit(1, K=1),
+    "%": _unit(1e-2),
+}
+
+# Scales whose zero is not absolute zero stand alone, never in a product.
+SCALES: dict[str, Unit] = {
+    "degC": Unit(1.0, (0, 0, 0, 0, 1), 273.15),
+    "°C": Unit(1.0, (0, 0, 0, 0, 1), 273.15),
+    "degF": Unit(5 / 9, (0, 0, 0, 0, 1), 459.67 * 5 / 9),
+    "°F": Unit(5 / 9, (0, 0, 0, 0, 1), 459.67 * 5 / 9),
+}
+
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+_TOKEN = re.compile(
+    r"\s*(?:(?P<name>[^\W\d⁰¹²³⁴⁵⁶⁷⁸⁹]+|[°%][^\W\d]?)|(?P<digits>\d+)|(?P<raised>[⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)"
+    r"|(?P<sign>\*\*|[-+*/^().·⋅]))"
+)
+_RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+
+
+def split_quantity(text: str) -> tuple[float, str]:
+    """The number in front and the unit behind it; the unit may be empty.
+
+    Raises
+    ------
+    UnitError
+        When the text does not begin with a number.
+    """
+    if len(text) > LONGEST_TEXT:
+        raise UnitError(f"is longer than the {LONGEST_TEXT} characters a quantity may have")
+    found = _QUANTITY.fullmatch(text.replace("−", "-"))
+    if found is None:
+        raise UnitError("does not begin with a number")
+    if found[2].startswith(","):
+        raise UnitError("has a decimal comma where a decimal point is read")
+    return float(found[1]), found[2]
+
+
+def to_si(text: str, si_unit: str) -> float:
+    """The SI value of a quantity in text, checked to have the dimension of `si_unit`.
+
+    A number without a unit is SI already.
+
+    Raises
+    ------
+    UnitError
+        For an unknown unit or a wrong dimension; its text completes "motor.bore is ...".
+    """
+    number, unit_text = split_quantity(text)
+    if not unit_text:
+        return number
+    unit = SCALES.get(unit_text) or parse_unit(unit_text)
+    wanted = parse_unit(si_unit)
+    if unit.powers != wanted.powers:
+        raise UnitError(
+            f"has the unit {unit_text!r}, which measures {measured(unit)}, "
+            f"not {measured(wanted)} ({si_unit})"
+        )
+    return number * unit.factor + unit.offset
+
+
+def from_si(value: float, unit_text: str) -> float:
+    """The number that, followed by the unit, means this SI value."""
+    unit = SCALES.get(unit_text) or parse_unit(unit_text)
+    return (value - unit.offset) / unit.factor
+
+
+@cache
+def parse_unit(text: str) -> Unit:
+    """A unit expression such as `m^3/(s*Pa)`, `N.s/m`, `mm²` or `kg/m3`.
+
+    Products are `*`, `.`, `·` or a space; powers are `^2`, `**2`, `²` or a
+    digit behind the name. Division binds as in `a/b*c = (a/b)*c`.
+    """
+    if text in ("", "1"):
+        return Unit(1.0)
+    try:
+        unit, rest = _product(_tokens(text), text, DEEPEST_NESTING)
+        beyond = not isfinite(unit.factor) or unit.factor == 0
+    except (OverflowError, ZeroDivisionError):
+        beyond, rest = True, []
+    if beyond:
+        raise UnitError(f"has the unit {text!r}, whose size is beyond all numbers")
+    if rest:
+        raise UnitError(f"has the unit {text!r}, which does not end properly")
+    return unit
+
+
+def _tokens(text: str) -> list[tuple[str, str]]:
+    tokens, position = [], 0
+    text = text.rstrip()
+    while position < len(text):
+        found = _TOKEN.match(text, position)
+        if found is None:
+            raise UnitError(
+                f"has the unit {text!r}, in which {text[position : position + 1]!r} means nothing"
+            )
+        kind = str(found.lastgroup)
+        tokens.append((kind, found[kind]))
+        position = found.end()
+    return tokens
+
+
+def _product(
+    tokens: list[tuple[str, str]], text: str, depth: int
+) -> tuple[Unit, list[tuple[str, str]]]:
+    if depth == 0:
+        raise UnitError(f"has the unit {text!r}, whose brackets are nested too deeply")
+    unit, tokens = _factor(tokens, text, depth)
+    while tokens and tokens[0][1] != ")":
+        sign = 1
+        if tokens[0][1] in ("*", ".", "·", "⋅", "/"):
+            sign = -1 if tokens[0][1] == "/" else 1
+            tokens = tokens[1:]
+        factor, tokens = _factor(tokens, text, depth)
+        unit = unit.times(factor, sign)
+    return unit, tokens
+
+
+def _factor(
+    tokens: list[tuple[str, str]], text: str, depth: int
+) -> tuple[Unit, list[tuple[str, str]]]:
+    kind, word = tokens[0] if tokens else ("", "")
+    tokens = tokens[1:]
+    if word == "(":
+        unit, tokens = _product(tokens, text, depth - 1)
+        if not tokens or tokens[0][1] != ")":
+            raise UnitError(f"has the unit {text!r}, in which a bracket is not closed")
+        tokens = tokens[1:]
+    elif kind == "name":
+        unit = named_unit(word)
+    elif (kind, word) == ("digits", "1"):
+        unit = Unit(1.0)
+    else:
+        raise UnitError(f"has the unit {text!r}, in which a name is missing")
+    exponent, tokens = _exponent(tokens, text)
+    return unit.power(exponent), tokens
+
+
+def _exponent(tokens: list[tuple[str, str]], text: str) -> tuple[int, list[tuple[str, str]]]:
+    if not tokens:
+        return 1, tokens
+    kind, word = tokens[0]
+    if kind == "raised":
+        digits, tokens = word.translate(_RAISED), tokens[1:]
+    elif kind == "digits":
+        digits, tokens = word, tokens[1:]
+    elif word in ("^", "**"):
+        sign = ""
+        tokens = tokens[1:]
+        if tokens and tokens[0][1] in ("-", "+"):
+            sign, tokens = tokens[0][1], tokens[1:]
+        if not tokens or tokens[0][0] != "digits":
+            raise UnitError(f"has the unit {text!r}, in which an exponent is no whole number")
+        digits, tokens = sign + tokens[0][1], tokens[1:]
+    else:
+        return 1, tokens
+    if len(digits) > 2 or digits == "-":
+        raise UnitError(f"has the unit {text!r}, whose exponent {digits} is beyond all use")
+    return int(digits), tokens
+
+
+def named_unit(name: str) -> Unit:
+    """One unit by its name, from the table or from pint."""
+    name = name.replace("μ", "µ")  # the Greek letter for the micro sign
+    found = EVERYDAY.get(name) or _ask_pint(name)
+    if found is not None:
+        return found
+    if name in SCALES:
+        raise UnitError(f"uses {name!r} in a product, where a temperature scale has no meaning")
+    close = get_close_matches(name, EVERYDAY, n=1, cutoff=0.5)
+    if not close:
+        close = [known for known in EVERYDAY if known.lower() == name.lower()]
+    hint = f" (did you mean {close[0]!r}?)" if close else ""
+    raise UnitError(f"has the unknown unit {name!r}{hint}")
+
+
+@cache
+def _pint_registry():  # type: ignore[no-untyped-def]  # pint stays unimported until needed
+    import pint
+
+    return pint.UnitRegistry()
+
+
+@cache
+def _ask_pint(name: str) -> Unit | None:
+    """The unit from pint's definitions; None when pint has none that we can use."""
+    registry = _pint_registry()
+    roots = {"meter": "m", "gram": "g", "kilogram": "kg", "second": "s", "radian": "rad"}
+    roots["kelvin"] = "K"
+    try:
+        one = registry.Quantity(1.0, name).to_root_units()
+        zero = registry.Quantity(0.0, name).to_root_units()
+        powers = dict(one.units._units)
+        parts = [(roots[base], int(power)) for base, power in powers.items()]
+        exact = all(float(power).is_integer() for power in powers.values())
+    except Exception:  # pint raises errors of a dozen kinds; each means "not a unit for us"
+        return None
+    if not exact or zero.magnitude != 0:
+        return None
+    unit = Unit(float(one.magnitude))
+    for base, power in parts:
+        unit = unit.times(EVERYDAY[base].power(power))
+    return unit
+
+
+_MEASURED = {
+    "1": "a plain number",
+    "m": "a length",
+    "m^2": "an area",
+    "m^3": "a volume",
+    "kg": "a mass",
+    "s": "a time",
+    "rad": "an angle",
+    "rad/s": "a turning speed",
+    "1/s": "a frequency",
+    "m/s": "a speed",
+    "m/s^2": "an acceleration",
+    "m/s^3": "a jerk",
+    "m^3/s": "a flow",
+    "m^2/s": "a kinematic viscosity",
+    "kg/m^3": "a density",
+    "N": "a force",
+    "N*m": "a torque or an energy",
+    "Pa": "a pressure",
+    "Pa*s": "a dynamic viscosity",
+    "N*s/m": "a damping",
+    "m^3/(s*Pa)": "a leakage coefficient",
+    "W": "a power",
+    "K": "a temperature",
+}
+
+
+@cache
+def _measures() -> dict[tuple[int, ...], str]:
+    return {parse_unit(unit).powers: words for unit, words in _MEASURED.items()}
+
+
+def measured(unit: Unit) -> str:
+    """What a unit measures, in words, or its SI base units where no word is at hand."""
+    bases = [
+        base if power == 1 else f"{base}^{power}"
+        for base, power in zip(BASES, unit.powers, strict=True)
+        if power
+    ]
+    return _measures().get(unit.powers, "*".join(bases))

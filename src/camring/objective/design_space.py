@@ -1,0 +1,145 @@
+"""What may change: a box of variables, and the system at each of its points.
+
+`Variable` moves numbers of the system between bounds, `CamModes` shapes the
+cam. Points are coordinates in [0, 1]; the given system lies inside the box.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+from camring.numerics.quantity import ArrayLike, real
+from camring.objective.cam_modes import CamModes, control_values
+from camring.physics.system import System
+
+DocumentValue = float | list[float] | list[list[float]]
+
+
+def leaf(path: str) -> Callable[[System], Array]:
+    """The function that takes the leaf at a path, `motor.piston.bore`, out of a system."""
+    parts = path.split(".")
+
+    def take(system: System) -> Array:
+        here: Any = system
+        for part in parts:
+            here = getattr(here, part)
+        return here
+
+    return take
+
+
+class Variable(eqx.Module):
+    """One coordinate: a number of the system, or several that move together.
+
+    Attributes
+    ----------
+    keys
+        Their paths in the motor file; the first names the variable.
+    leaves
+        For each key the leaves that hold it.
+    low, high
+        Bounds in SI; of the change as a share of the given value if `relative`.
+    """
+
+    keys: tuple[str, ...] = eqx.field(static=True)
+    leaves: tuple[tuple[str, ...], ...] = eqx.field(static=True)
+    low: Float[Array, ""] = eqx.field(converter=real)
+    high: Float[Array, ""] = eqx.field(converter=real)
+    relative: bool = eqx.field(static=True, default=False)
+
+    @property
+    def name(self) -> str:
+        return self.keys[0]
+
+    def apply(self, system: System, unit: ArrayLike) -> System:
+        """The system with this coordinate at `unit`."""
+        reached = self.low + unit * (self.high - self.low)
+        for path in (path for paths in self.leaves for path in paths):
+            given = leaf(path)(system)
+            value = given * (1 + reached) if self.relative else reached
+            system = eqx.tree_at(leaf(path), system, jnp.asarray(value, given.dtype))
+        return system
+
+    def locate(self, system: System) -> Float[Array, ""]:
+        """The coordinate of the given system."""
+        given = 0.0 if self.relative else leaf(self.leaves[0][0])(system)
+        return (given - self.low) / (self.high - self.low)
+
+
+class DesignSpace(eqx.Module):
+    """A box of designs around a given system.
+
+    Every method takes that system, so a space is only the statement of what
+    may change and by how much.
+    """
+
+    variables: tuple[Variable, ...] = ()
+    cam: CamModes | None = None
+    cam_key: str = eqx.field(static=True, default="motor.cam.control_radii")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """A name for each coordinate."""
+        names = tuple(variable.name for variable in self.variables)
+        return names + (self.cam.names if self.cam is not None else ())
+
+    @property
+    def dimension(self) -> int:
+        return len(self.names)
+
+    def apply(self, system: System, unit_point: ArrayLike) -> System:
+        """The system of one design; traceable, differentiable, batched with `vmap`.
+
+        Parameters
+        ----------
+        system
+            The given one.
+        unit_point
+            Coordinates in [0, 1]; outside, the variables simply go on.
+        """
+        point = real(unit_point)
+        for place, variable in enumerate(self.variables):
+            system = variable.apply(system, point[place])
+        if self.cam is None:
+            return system
+        cam = self.cam.apply(system.motor.cam, point[len(self.variables) :])
+        return eqx.tree_at(lambda each: each.motor.cam, system, cam)
+
+    def locate(self, system: System) -> Float[np.ndarray, " coordinate"]:
+        """The given system's own point."""
+        point = [float(variable.locate(system)) for variable in self.variables]
+        modes = self.cam.dimension if self.cam is not None else 0
+        return np.clip(np.array(point + [0.5] * modes), 0.0, 1.0)
+
+    def document_values(
+        self, system: System, unit_point: Sequence[float] | Float[np.ndarray, " coordinate"]
+    ) -> dict[str, DocumentValue]:
+        """What a motor file of this design says: key -> SI number or list of them."""
+        design = self.apply(system, jnp.asarray(unit_point))
+        values: dict[str, DocumentValue] = {
+            key: float(leaf(paths[0])(design))
+            for variable in self.variables
+            for key, paths in zip(variable.keys, variable.leaves, strict=True)
+        }
+        if self.cam is not None:
+            values[self.cam_key] = np.asarray(leaf(self.cam_key)(design)).tolist()
+        return values
+
+    def describe(
+        self, system: System, unit_point: Sequence[float] | Float[np.ndarray, " coordinate"]
+    ) -> dict[str, float]:
+        """The value of each coordinate in SI: numbers as they are, mode amplitudes in m."""
+        design = self.apply(system, jnp.asarray(unit_point))
+        values = {v.name: float(leaf(v.leaves[0][0])(design)) for v in self.variables}
+        if self.cam is not None:
+            modes = np.asarray(unit_point, dtype=float)[len(self.variables) :]
+            amplitudes = (2 * modes - 1) * np.asarray(self.cam.bounds())
+            values.update(zip(self.cam.names, amplitudes.tolist(), strict=True))
+        return values
+
+
+__all__ = ["CamModes", "DesignSpace", "Variable", "control_values", "leaf"]
