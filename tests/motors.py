@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from math import pi
 
 import equinox as eqx
+import jax
+import jax.numpy as jnp
 import numpy as np
 from hypothesis import strategies as st
 
@@ -59,17 +61,37 @@ def smooth_radii(rng, count: int, inner: float, stroke: float, modes: int = 3) -
     return inner + stroke * (shape - shape.min()) / np.ptp(shape)
 
 
-def random_cam(rng, lobes: int, inner: float, stroke: float, kind: str = "radial") -> AbstractCam:
-    """`kind`: radial, ring (free round the whole turn) or planar."""
-    degree = int(rng.choice([3, 3, 3, 4, 5]))
-    count = int(rng.integers(10, 21))
-    if kind == "ring":
+@dataclass(frozen=True)
+class Structure:
+    """The counts and kinds of a motor: what shapes its arrays and costs a compilation."""
+
+    kind: str  # radial, ring (free round the whole turn) or planar
+    pistons: int
+    lobes: int
+    count: int  # control values of a lobe
+    degree: int = 3
+    reference: str = "minimum"
+
+
+STRUCTURES = (
+    Structure("radial", 8, 6, 16),
+    Structure("radial", 10, 8, 12),
+    Structure("radial", 7, 5, 14, degree=4, reference="mean"),
+    Structure("ring", 9, 4, 10),
+    Structure("radial", 5, 9, 12, degree=5),
+    Structure("planar", 6, 4, 12),
+)
+
+
+def random_cam(rng, structure: Structure, inner: float, stroke: float) -> AbstractCam:
+    lobes, count, degree = structure.lobes, structure.count, structure.degree
+    if structure.kind == "ring":
         lobe = [
-            smooth_radii(rng, count, inner, stroke * rng.uniform(0.93, 1.0)) for _ in range(lobes)
+            smooth_radii(rng, count, inner, stroke * rng.uniform(0.97, 1.0)) for _ in range(lobes)
         ]
         return RadialCam(np.concatenate(lobe), 1, degree)
     radii = smooth_radii(rng, count, inner, stroke)
-    if kind == "radial":
+    if structure.kind == "radial":
         return RadialCam(radii, lobes, degree)
     step = 2 * pi / lobes / count
     turned = step * (np.arange(count) + rng.uniform(-0.1, 0.1, size=count))
@@ -77,44 +99,50 @@ def random_cam(rng, lobes: int, inner: float, stroke: float, kind: str = "radial
     return PlanarCam(points, lobes, degree)
 
 
-def sound_case(seed: int, kind: str | None = None) -> Case:
-    """A motor an engineer might build, at a duty it might run at."""
+def sound_case(seed: int, structure: Structure | None = None) -> Case:
+    """A motor an engineer might build, at a duty it might run at.
+
+    Without a structure the seed picks one of `STRUCTURES`.
+    """
     rng = np.random.default_rng([2024, seed])
-    lobes = int(rng.integers(4, 10))
-    pistons = int(rng.choice([p for p in range(5, 17) if p != lobes]))
+    structure = structure or STRUCTURES[seed % len(STRUCTURES)]
+    lobes, pistons = structure.lobes, structure.pistons
     bore = rng.uniform(0.025, 0.06)
     stroke = bore * rng.uniform(0.3, 0.5)
     room = lobes * stroke / rng.uniform(0.7, 1.1)  # keeps the pressure angle below about 35 deg
     inner = max(room, 1.3 * pistons * bore / (2 * pi))
-    kind = kind or str(rng.choice(["radial", "radial", "radial", "ring", "planar"]))
-    cam = random_cam(rng, lobes, inner, stroke, kind)
+    cam = random_cam(rng, structure, inner, stroke)
     area = pi * bore**2 / 4
     pitch = 2 * pi / lobes
-    speed = np.exp(rng.uniform(np.log(10), np.log(300))) * REVOLUTION_PER_MINUTE
     drop = np.exp(rng.uniform(np.log(0.2e5), np.log(15e5)))  # throttled at the largest flow
+    supply, back = rng.uniform(120e5, 420e5), rng.uniform(5e5, 20e5)
+    # As fast as centrifugal lift-off and the return pressure let it.
+    mass = 400 * bore**2
+    fastest = np.sqrt(0.5 * area * back / (mass * stroke / 2)) / lobes
+    speed = np.exp(rng.uniform(np.log(0.03), 0)) * min(fastest, 300 * REVOLUTION_PER_MINUTE)
     flow = area * speed * stroke * lobes / 2
-    port_area = flow / (0.65 * np.sqrt(2 * drop / 870))
-    widths = pitch / 2 * rng.uniform(0.92, 0.99, size=2)
+    port_area = flow / (0.65 * np.sqrt(2 * min(drop, 0.5 * back) / 870))
+    widths = pitch / 2 * rng.uniform(0.94, 0.995, size=2)
     plate = ValvePlate(
         port_area,
         Port(widths[0], pitch / 4),
         Port(widths[1], 3 * pitch / 4),
         LinearWindow(rng.uniform(0.15, 1.0)),
-        pitch * rng.uniform(-0.004, 0.004),
+        pitch * rng.uniform(-0.003, 0.003),
         lobes=lobes,
     )
-    supply, back = rng.uniform(120e5, 420e5), rng.uniform(5e5, 20e5)
+    lift_spread = 1.0 if structure.reference == "mean" else 0.0
     motor = Motor(
         cam,
-        Piston(bore, 400 * bore**2),
+        Piston(bore, mass),
         Roller(0.4 * bore, bore, STEEL),
         STEEL,
         plate,
-        area * stroke * rng.uniform(0.4, 1.5),
+        area * stroke * (rng.uniform(0.4, 1.5) + lift_spread),
         TurbulentOrifice(rng.uniform(0.6, 0.7)),
-        ConstantLeakage(area * 10 ** rng.uniform(-10.2, -9.2)),
+        ConstantLeakage(area * speed * stroke * 10 ** rng.uniform(-11, -9.5)),
         ViscousFriction(rng.uniform(5.0, 60.0)),
-        reference="mean" if rng.uniform() < 0.2 else "minimum",
+        reference=structure.reference,
         pistons=pistons,
         lobes=lobes,
     )
@@ -122,9 +150,13 @@ def sound_case(seed: int, kind: str | None = None) -> Case:
         rng.uniform(840, 900), rng.uniform(0.9e9, 1.8e9), 3e3, rng.choice([1e5, 1e5, 3e4])
     )
     case = back if rng.uniform() < 0.5 else rng.uniform(1e5, 3e5)
-    if motor.reference == "mean":
-        motor = eqx.tree_at(lambda m: m.dead_volume, motor, motor.dead_volume + area * stroke)
     return Case(motor, fluid, OperatingPoint(speed, supply, back, case))
+
+
+def stacked(cases: list[Case]) -> tuple:
+    """Motors of one structure as one batch: (motor, fluid, point) with a leading axis."""
+    trees = [tuple(case) for case in cases]
+    return jax.tree.map(lambda *leaves: jnp.stack(leaves), *trees)
 
 
 AWKWARD = (
@@ -146,10 +178,10 @@ AWKWARD = (
 )
 
 
-def awkward_case(seed: int, trouble: str) -> Case:
+def awkward_case(seed: int, trouble: str, structure: Structure = STRUCTURES[0]) -> Case:
     """A sound motor with one thing pushed to where solvers have trouble."""
     rng = np.random.default_rng([77, seed])
-    case = sound_case(seed)
+    case = sound_case(seed, structure)
     plate = case.motor.valve_plate
     pitch = plate.pitch
     widths = lambda c: (c.motor.valve_plate.supply.width, c.motor.valve_plate.return_.width)  # noqa: E731
