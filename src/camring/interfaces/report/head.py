@@ -1,0 +1,84 @@
+"""The head of the report: the motor's name, the verdict, and the few numbers that matter first."""
+
+from camring.interfaces.report.data import ReportData
+from camring.interfaces.report.quantities import QUANTITIES, change, significant
+from camring.interfaces.report.svg import element, escape
+
+__all__ = ["head"]
+
+_KEYS = ("torque_ripple", "efficiency", "max_contact_stress", "mean_torque")
+
+
+def head(data: ReportData) -> str:
+    """Name, verdict and key figures as markup."""
+    kind = "design report" if data.is_study else "simulation report"
+    if len(data.designs) > 1 and not data.is_study:
+        kind = "comparison"
+    return element(
+        "header",
+        element("p", f"camring · {kind}", class_="eyebrow"),
+        element("h1", escape(data.title)),
+        element("p", escape(data.subtitle), class_="subtitle"),
+        _verdict(data),
+        _keys(data),
+    )
+
+
+def _verdict(data: ReportData) -> str:
+    if data.verdict is None:
+        return ""
+    good = data.verdict.validated
+    word = "✓ Validated" if good else "✕ Not validated"
+    return element(
+        "div",
+        element("strong", word),
+        element("span", escape(data.verdict.sentence)),
+        class_=f"verdict {'yes' if good else 'no'}",
+        role="note",
+    )
+
+
+def _keys(data: ReportData) -> str:
+    """Four results at the first operating point; limits count at the worst point."""
+    first = [design.results[0] for design in data.designs]
+    keys = []
+    for name in _KEYS:
+        quantity = QUANTITIES[name]
+        values = [result.metrics.get(name) for result in first]
+        if any(value is None for value in values):
+            continue
+        numbers = [float(value) for value in values if value is not None]
+        now = quantity.written(numbers[-1])
+        shown = element(
+            "span", escape(now) + element("span", f" {quantity.unit}", class_="unit"), class_="now"
+        )
+        was = ""
+        if len(numbers) == 2:
+            text, _ = change(quantity, *numbers)
+            was = f"from {quantity.written(numbers[0])} {quantity.unit} ({text})"
+            was = element("span", escape(was), class_="was")
+        keys.append(
+            element(
+                "div",
+                element("dt", escape(quantity.label)),
+                element("dd", shown, was),
+                class_="key",
+            )
+        )
+    margins = [c.margins[-1] for c in data.constraints]
+    if margins:
+        least = min(margins)
+        text = f"{significant(100 * least, 2)}"
+        shown = element("span", text + element("span", " %", class_="unit"), class_="now")
+        note = "a limit is broken" if least < 0 else "all limits kept"
+        keys.append(
+            element(
+                "div",
+                element("dt", "Tightest margin"),
+                element("dd", shown, element("span", note, class_="was")),
+                class_="key",
+            )
+        )
+    point = first[-1].duty.name
+    caption = element("p", escape(f"At the first operating point, {point}:"), class_="hidden")
+    return caption + element("dl", *keys, class_="keys", aria_label=f"Key figures at {point}")

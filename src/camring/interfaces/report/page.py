@@ -1,0 +1,220 @@
+"""The page: head, sections in reading order, style and script inside."""
+
+from collections.abc import Callable, Sequence
+from importlib.resources import files
+
+from camring.interfaces.report import tables
+from camring.interfaces.report.data import ReportData
+from camring.interfaces.report.figure import Figure
+from camring.interfaces.report.head import head
+from camring.interfaces.report.machine import machine_figure
+from camring.interfaces.report.pictures.cam import cam_figures
+from camring.interfaces.report.pictures.contact import contact_figures
+from camring.interfaces.report.pictures.losses import loss_figure
+from camring.interfaces.report.pictures.margins import margin_figure
+from camring.interfaces.report.pictures.motion import motion_figures
+from camring.interfaces.report.pictures.pressure import pressure_figures
+from camring.interfaces.report.pictures.search import convergence_figure, pareto_figure
+from camring.interfaces.report.pictures.sensitivity import tornado_figures
+from camring.interfaces.report.pictures.torque import torque_figures
+from camring.interfaces.report.strips import patterns
+from camring.interfaces.report.svg import element, escape
+
+__all__ = ["render"]
+
+
+def _asset(name: str) -> str:
+    return files("camring.interfaces.report").joinpath(name).read_text(encoding="utf-8")
+
+
+def plate(figure: Figure | None) -> str:
+    """One figure as markup; nothing for a figure that had nothing to show."""
+    if figure is None:
+        return ""
+    shape = " ".join(word for word in ("wide", "tall") if getattr(figure, word))
+    return element(
+        "figure",
+        element("h3", escape(figure.title)),
+        element("div", figure.picture, class_="picture"),
+        element("figcaption", escape(figure.sentence)),
+        class_=shape or None,
+        id=f"figure-{figure.name}",
+    )
+
+
+def plates(figures: Sequence[Figure | None]) -> str:
+    drawn = "".join(plate(figure) for figure in figures)
+    return element("div", drawn, class_="plates") if drawn else ""
+
+
+def _by_duty(data: ReportData, content: Callable[[int], str]) -> str:
+    """One block for each operating point; the script shows one at a time, paper all."""
+    duties = [result.duty for result in data.designs[-1].results]
+    if len(duties) == 1:
+        return content(0)
+    blocks = []
+    for k, duty in enumerate(duties):
+        title = element("h3", escape(f"Operating point {k + 1}: {duty.name}"), class_="duty-name")
+        blocks.append(element("div", title, content(k), class_="duty", data_duty=k))
+    return "".join(blocks)
+
+
+def _results(data: ReportData) -> str:
+    return _by_duty(data, lambda k: tables.result_table(data.designs, k))
+
+
+def _limits(data: ReportData) -> str:
+    figure = margin_figure(data.constraints, data.designs)
+    if figure is None:
+        return element("p", "The motor file sets no limits.", class_="lead")
+    table = element(
+        "details",
+        element("summary", "The same as a table"),
+        tables.constraint_table(data.constraints, data.designs),
+    )
+    return plates([figure]) + table
+
+
+def _cam(data: ReportData) -> str:
+    return plates(cam_figures(data.designs))
+
+
+def _machine(data: ReportData) -> str:
+    return _by_duty(data, lambda k: plates([machine_figure(data.designs, k)]))
+
+
+def _motion(data: ReportData) -> str:
+    return _by_duty(data, lambda k: plates(motion_figures(data.designs, k)))
+
+
+def _pressure(data: ReportData) -> str:
+    return _by_duty(data, lambda k: plates(pressure_figures(data.designs, k)))
+
+
+def _torque(data: ReportData) -> str:
+    return _by_duty(data, lambda k: plates(torque_figures(data.designs, k)))
+
+
+def _power(data: ReportData) -> str:
+    return _by_duty(data, lambda k: plates([loss_figure(data.designs, k)]))
+
+
+def _contact(data: ReportData) -> str:
+    return _by_duty(data, lambda k: plates(contact_figures(data.designs, k, data.constraints)))
+
+
+def _search(data: ReportData) -> str:
+    if data.search is None:
+        return ""
+    parts = [plates([convergence_figure(data.search), pareto_figure(data)])]
+    if data.variables:
+        parts.append(tables.variable_table(data.variables, data.designs))
+    if data.search.leave_one_out:
+        parts.append(tables.leave_one_out_table(data.search))
+    parts += [element("p", escape(note)) for note in data.search.notes]
+    return "".join(parts)
+
+
+def _sensitivity(data: ReportData) -> str:
+    return plates(tornado_figures(data.sensitivities))
+
+
+def _validation(data: ReportData) -> str:
+    parts = []
+    if data.verdict is not None and data.verdict.checks:
+        parts.append(tables.check_table(data.verdict))
+    parts.append(tables.error_table(data))
+    return "".join(parts)
+
+
+def _provenance(data: ReportData) -> str:
+    source = data.provenance
+    pairs = [("Date", source.date), ("Motor file", source.input_name)]
+    pairs += [*source.settings.items(), *source.versions.items()]
+    parts = [tables.pairs_table([p for p in pairs if p[1]])]
+    for title, text in (
+        ("The motor file as given", source.input_text),
+        ("The best motor as a motor file", source.best_text),
+    ):
+        if text:
+            parts.append(
+                element(
+                    "details", element("summary", title), element("pre", escape(text), tabindex=0)
+                )
+            )
+    return "".join(parts)
+
+
+_SECTIONS: tuple[tuple[str, str, Callable[[ReportData], str]], ...] = (
+    ("machine", "The machine", _machine),
+    ("results", "Results", _results),
+    ("limits", "Limits", _limits),
+    ("cam", "Cam ring", _cam),
+    ("motion", "Piston motion", _motion),
+    ("pressure", "Chamber pressure", _pressure),
+    ("torque", "Torque", _torque),
+    ("power", "Power", _power),
+    ("contact", "Roller contact", _contact),
+    ("search", "Search", _search),
+    ("sensitivity", "Sensitivity", _sensitivity),
+    ("validation", "Numerical quality", _validation),
+    ("provenance", "Provenance", _provenance),
+)
+
+
+def _duty_buttons(data: ReportData) -> str:
+    duties = [result.duty for result in data.designs[-1].results]
+    if len(duties) == 1:
+        return ""
+    buttons = [
+        element("button", escape(duty.name), type="button", data_duty=k, aria_pressed="false")
+        for k, duty in enumerate(duties)
+    ]
+    label = element("span", "Operating point")
+    return element(
+        "div", label, *buttons, class_="duties", role="group", aria_label="Operating point"
+    )
+
+
+def render(data: ReportData) -> str:
+    """The whole report as one HTML text; the same data give the same text."""
+    contents, sections = [], []
+    for name, title, content in _SECTIONS:
+        body = content(data)
+        if not body:
+            continue
+        contents.append(element("li", element("a", escape(title), href=f"#{name}")))
+        heading = element("h2", element("span", str(len(contents)), class_="count") + escape(title))
+        sections.append(element("section", heading, body, id=name))
+    navigation = element(
+        "nav", element("ol", *contents), _duty_buttons(data), aria_label="Contents"
+    )
+    body = element(
+        "div",
+        element("a", "Skip to the results", href="#results", class_="skip"),
+        head(data),
+        navigation,
+        element("main", *sections),
+        element("footer", escape(_foot(data))),
+        class_="sheet",
+    )
+    return "".join(
+        (
+            '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            f"<title>{escape(data.title)}: design report</title>",
+            # An empty icon, or browsers would ask a server for one.
+            '<link rel="icon" href="data:,">',
+            f"<style>{_asset('report.css')}</style></head>\n<body>",
+            patterns(),
+            body,
+            f"<script>{_asset('report.js')}</script></body></html>\n",
+        )
+    )
+
+
+def _foot(data: ReportData) -> str:
+    version = data.provenance.versions.get("camring", "")
+    made = f"Made by camring {version}".rstrip()
+    date = f" on {data.provenance.date}" if data.provenance.date else ""
+    return f"{made}{date}. This file holds everything it shows and asks no network for anything."

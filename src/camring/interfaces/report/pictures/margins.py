@@ -1,0 +1,124 @@
+"""How far every result stays from its limit."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from camring.interfaces.report.chart import picture
+from camring.interfaces.report.data import Constraint, Design
+from camring.interfaces.report.figure import Figure, legend, looks
+from camring.interfaces.report.marks import row_of_keys
+from camring.interfaces.report.palette import INK, LIMIT, Look
+from camring.interfaces.report.pictures.bars import TOP, WIDTH, Bars
+from camring.interfaces.report.quantities import QUANTITIES, significant
+from camring.interfaces.report.scale import Axis
+from camring.interfaces.report.svg import element, words
+
+__all__ = ["margin_figure", "plain_name"]
+
+WIDEST = 1.0  # margins beyond the whole limit are cut there and say so
+DEEPEST = 0.5
+
+_NAMES = {
+    "min_pressure": "Lowest pressure (cavitation)",
+    "max_pressure": "Highest pressure",
+    "min_contact_force": "Lowest contact force (lift-off)",
+    "min_volume": "Chamber volume positive",
+    "lift": "Lift range",
+}
+
+
+def margin_figure(constraints: Sequence[Constraint], designs: Sequence[Design]) -> Figure | None:
+    """Room left to every limit in every design; a bar to the left of zero breaks the limit."""
+    if not constraints:
+        return None
+    margins = np.array([c.margins for c in constraints], dtype=float)
+    finite = margins[np.isfinite(margins)]
+    least = float(finite.min()) if finite.size else 0.0
+    low = -0.02 if least >= 0 else max(1.15 * least, -DEEPEST)
+    bars = Bars(
+        Axis(
+            "Margin, % of the limit's own scale (right of the red line: kept)",
+            "",
+            100 * low,
+            100 * WIDEST,
+            tick_count=8,
+        ),
+        len(constraints),
+        14.0 * len(designs) + 14.0,
+        right=190.0,
+    )
+    rows = []
+    for row, constraint in enumerate(constraints):
+        y = bars.y(row) + 8
+        middle = y + 7 * len(designs) - 2
+        rows.append(bars.label(middle, plain_name(constraint.name), constraint.limit))
+        pairs = zip(constraint.margins, constraint.values, looks(designs), strict=True)
+        for k, (margin, value, look) in enumerate(pairs):
+            rows.append(_bar(bars, y + 14 * k, float(margin), value, look, low))
+    zero = bars.x(0.0)
+    wall = element(
+        "line", x1=zero, x2=zero, y1=TOP - 4, y2=bars.bottom, stroke=LIMIT, stroke_width=1.6
+    ) + words(zero, TOP - 10, "limit", class_="note", text_anchor="middle", fill=LIMIT)
+    svg = picture(
+        "margins",
+        "Constraint margins",
+        "How far each result stays from its limit, in per cent of the limit's scale.",
+        bars.size,
+        bars.grid(),
+        *rows,
+        wall,
+        row_of_keys(legend(designs), WIDTH - 16, 16.0),
+    )
+    return Figure("margins", "Room left to the limits", svg, _words(constraints, designs), True)
+
+
+def _bar(bars: Bars, y: float, margin: float, value: str, look: Look, low: float) -> str:
+    if not np.isfinite(margin):
+        return words(bars.x(0.0) + 7, y + 9, f"{value} · no margin known", class_="tick")
+    zero, end = bars.x(0.0), bars.x(100 * float(np.clip(margin, low, WIDEST)))
+    broken = margin < 0
+    bar = element(
+        "rect",
+        x=min(zero, end),
+        y=y,
+        width=max(abs(end - zero), 1.0),
+        height=10.0,
+        fill="#ffffff" if broken else look.colour,
+        stroke=LIMIT if broken else look.colour,
+        stroke_width=1.4 if broken else 0.8,
+        fill_opacity=0.5 if look.dash and not broken else None,
+    )
+    text = f"{value} · {significant(100 * margin, 2)} %" + (" broken" if broken else "")
+    text = f"▸ {text}" if margin > WIDEST else text
+    return bar + words(
+        max(end, zero) + 7, y + 9, text, class_="tick", fill=LIMIT if broken else INK
+    )
+
+
+def plain_name(name: str) -> str:
+    """A constraint's key as words: "max_contact_stress" becomes "Highest contact stress"."""
+    if name in _NAMES:
+        return _NAMES[name]
+    if name in QUANTITIES:
+        return QUANTITIES[name].label
+    sense, _, rest = name.partition("_")
+    heads = {"min": "Lowest", "max": "Highest"}
+    if sense in heads:
+        return f"{heads[sense]} {rest.replace('_', ' ')}"
+    return name.replace("_", " ").capitalize()
+
+
+def _words(constraints: Sequence[Constraint], designs: Sequence[Design]) -> str:
+    margins = np.array([c.margins[-1] for c in constraints], dtype=float)
+    if not np.isfinite(margins).any():
+        return "No margin could be computed."
+    tightest = int(np.nanargmin(margins))
+    name = plain_name(constraints[tightest].name)
+    room = significant(100 * abs(float(margins[tightest])), 2)
+    broken = int((margins < 0).sum())
+    whose = "" if len(designs) == 1 else f" of the {designs[-1].label} design"
+    if broken:
+        limits = "One limit is" if broken == 1 else f"{broken} limits are"
+        return f"{limits} broken; the worst{whose} is “{name}”, by {room} %."
+    return f"All limits are kept; the tightest{whose} is “{name}” with {room} % to spare."

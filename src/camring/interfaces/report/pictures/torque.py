@@ -1,0 +1,126 @@
+"""Shaft torque over a revolution, and the orders it is made of."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+
+from camring.interfaces.report.chart import Chart, draw
+from camring.interfaces.report.data import Design, Result
+from camring.interfaces.report.figure import Figure, around, degrees, legend, looks
+from camring.interfaces.report.layers import Curve, Rule, Stems
+from camring.interfaces.report.quantities import significant
+from camring.interfaces.report.scale import Axis, covering
+
+__all__ = ["surviving", "torque_figures"]
+
+FLOOR = 1e-3  # per cent of the mean torque; what lies lower is not drawn
+
+
+def _percent(results: Sequence[Result]) -> str:
+    return ", then ".join(significant(100 * r.metrics["torque_ripple"], 3) + " %" for r in results)
+
+
+def _over_revolution(designs: Sequence[Design], duty: int) -> Figure:
+    name = f"torque-{duty}"
+    layers: list = []
+    heights = []
+    for design, look in zip(designs, looks(designs), strict=True):
+        waves = design.results[duty].waves
+        angle, torque = around(waves.angle, waves.torque, 0.0, 2 * pi - 1e-9)
+        heights.append(torque)
+        layers.append(Curve(degrees(angle), torque, design.label, look))
+    last = designs[-1].results[duty]
+    mean = last.metrics["mean_torque"]
+    layers.insert(0, Rule(mean))
+    svg = draw(
+        Chart(
+            name,
+            "Shaft torque over one revolution",
+            "Torque of the shaft, all pistons together, over one revolution. The axis does not "
+            "start at zero.",
+            Axis("Shaft angle", "deg", 0.0, 360.0, "angle", 12),
+            covering("Shaft torque", "N·m", heights),
+            layers,
+            legend(designs),
+            width=1064.0,
+            height=310.0,
+        )
+    )
+    results = [design.results[duty] for design in designs]
+    times = designs[-1].facts.surviving_order
+    sentence = (
+        f"All pistons together repeat {times} times a revolution about a mean of "
+        f"{significant(mean)} N·m (the axis does not start at zero). One-sided torque ripple: "
+        f"{_percent(results)}."
+    )
+    return Figure(name, "Shaft torque over a revolution", svg, sentence, wide=True)
+
+
+def surviving(result: Result, order: int, limit: int = 12) -> tuple[np.ndarray, np.ndarray]:
+    """The multiples of the surviving order and their amplitudes in per cent of mean torque."""
+    chosen = (result.orders > 0) & (result.orders % order == 0)
+    orders = result.orders[chosen][:limit]
+    amplitudes = result.torque_amplitudes[chosen][:limit]
+    return orders, 100 * amplitudes / abs(result.metrics["mean_torque"])
+
+
+def _spectrum(designs: Sequence[Design], duty: int) -> Figure:
+    name = f"orders-{duty}"
+    count = len(designs)
+    layers: list = []
+    tops, reach = [], 0.0
+    for k, (design, look) in enumerate(zip(designs, looks(designs), strict=True)):
+        orders, percent = surviving(design.results[duty], design.facts.surviving_order)
+        shown = np.where(percent > FLOOR, percent, np.nan)
+        tops.append(shown)
+        reach = max(reach, float(orders[-1]) if orders.size else 1.0)
+        layers.append(Stems(orders, shown, look, 8.0 * (k - (count - 1) / 2)))
+    base = designs[-1].facts.surviving_order
+    high = covering("", "", tops, kind="log").high
+    svg = draw(
+        Chart(
+            name,
+            "Torque by shaft order",
+            "Peak amplitude of each surviving order of shaft torque, in per cent of mean torque, "
+            "on a logarithmic scale.",
+            Axis(
+                "Shaft order", "per revolution", 0.0, reach + base / 2, marked=_marks(base, reach)
+            ),
+            Axis("Amplitude (peak)", "% of mean torque", FLOOR, max(high, 1.0), "log"),
+            layers,
+            [(label, replace(look, key="mark")) for label, look in legend(designs)],
+            width=1064.0,
+            height=310.0,
+            readable=False,
+        )
+    )
+    return Figure(name, "Which orders survive", svg, _order_sentence(designs, duty), wide=True)
+
+
+def _marks(base: int, reach: float) -> tuple[float, ...]:
+    return tuple(float(n) for n in range(base, int(reach) + 1, base))
+
+
+def _order_sentence(designs: Sequence[Design], duty: int) -> str:
+    facts = designs[-1].facts
+    base = facts.surviving_order
+    orders, percent = surviving(designs[-1].results[duty], base)
+    why = (
+        f"{facts.pistons} pistons on {facts.lobes} lobes cancel every order that is not a multiple "
+        f"of {base}, so torque holds orders {base}, {2 * base}, {3 * base} and so on only."
+    )
+    if not orders.size or not np.isfinite(percent).any():
+        return why
+    strongest = int(np.argmax(percent))
+    whose = "" if len(designs) == 1 else f" of the {designs[-1].label} design"
+    return (
+        f"{why} The strongest{whose} is order {int(orders[strongest])} with "
+        f"{significant(float(percent[strongest]), 2)} % of mean torque (peak)."
+    )
+
+
+def torque_figures(designs: Sequence[Design], duty: int) -> list[Figure]:
+    """Torque in angle and in orders at one operating point."""
+    return [_over_revolution(designs, duty), _spectrum(designs, duty)]

@@ -1,0 +1,132 @@
+"""From a system to what a report shows of it: simulate, sample, and turn into plain numbers."""
+
+from collections.abc import Sequence
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array
+
+from camring.geometry.contour import pitch_curvature, pressure_angle, undercut_factor
+from camring.interfaces.report.data import Design, Duty, Facts, Profile, Result, Waves
+from camring.metrics.spectrum import order_spectrum
+from camring.metrics.summary import summarise
+from camring.physics.cycle import Cycle, simulate
+from camring.physics.motor import Motor
+from camring.physics.operating_point import OperatingPoint
+from camring.physics.resolution import Resolution
+from camring.physics.system import System
+from camring.physics.waveforms import waveforms
+
+__all__ = ["design_of", "facts_of"]
+
+SAMPLES_PER_LOBE = 1200
+MOST_SAMPLES = 7200
+
+
+def facts_of(motor: Motor) -> Facts:
+    """The numbers of the hardware that pictures need."""
+    return Facts(
+        pistons=motor.pistons,
+        lobes=motor.lobes,
+        repeats=motor.cam.repeats,
+        bore=float(motor.piston.bore),
+        roller_radius=float(motor.roller.radius),
+        surviving_order=motor.surviving_order,
+        distinct_phases=motor.distinct_phases,
+    )
+
+
+def design_of(label: str, system: System, resolution: Resolution | None = None) -> Design:
+    """One motor simulated at each of its operating points.
+
+    Designs that differ in numbers only share one compilation.
+    """
+    resolution = resolution or Resolution()
+    angle = _angles(system.motor)
+    results = tuple(_result(system, point, angle, resolution) for point in system.operating_points)
+    return Design(label, facts_of(system.motor), _profile(system.motor, angle), results)
+
+
+def _angles(motor: Motor) -> np.ndarray:
+    """One period of the cam with both ends; the last angle lies a hair inside.
+
+    Inside, because at the end itself the next period's jerk already holds.
+    """
+    pitches = motor.lobes // motor.cam.repeats
+    count = min(SAMPLES_PER_LOBE * pitches, MOST_SAMPLES)
+    angle = np.linspace(0.0, motor.cam.period, count + 1)
+    angle[-1] *= 1 - 1e-9
+    return angle
+
+
+def _profile(motor: Motor, angle: np.ndarray) -> Profile:
+    radius = motor.cam.pitch_radius(jnp.asarray(angle))
+    return Profile(
+        angle,
+        np.asarray(radius.value),
+        np.asarray(radius.first),
+        np.asarray(pitch_curvature(radius)),
+        np.asarray(pressure_angle(radius)),
+        np.asarray(undercut_factor(radius, motor.roller.radius)),
+    )
+
+
+# Apart, so that the dear one is the same program as everywhere else and comes from the cache.
+_simulate = eqx.filter_jit(simulate)
+_summarise = eqx.filter_jit(summarise)
+_waveforms = eqx.filter_jit(waveforms)
+
+
+@eqx.filter_jit
+def _torque_by_order(cycle: Cycle, highest_order: int) -> Array:
+    return order_spectrum(cycle, highest_order).torque
+
+
+def _result(
+    system: System, point: OperatingPoint, angle: np.ndarray, resolution: Resolution
+) -> Result:
+    motor, plate = system.motor, system.motor.valve_plate
+    cycle = _simulate(motor, system.fluid, point, resolution)
+    metrics = _summarise(cycle, resolution.harmonics)
+    waves = _waveforms(cycle, jnp.asarray(angle))
+    torque = np.asarray(_torque_by_order(cycle, resolution.harmonics))
+    return Result(
+        duty=_duty(point),
+        metrics={name: float(value) for name, value in vars(metrics).items()},
+        waves=Waves(
+            angle=angle,
+            **{name: np.asarray(getattr(waves, name)) for name in _WAVES},
+            supply_opening=np.asarray(plate.opening(plate.supply, jnp.asarray(angle))),
+            return_opening=np.asarray(plate.opening(plate.return_, jnp.asarray(angle))),
+        ),
+        orders=motor.cam.repeats * np.arange(1, len(torque) + 1),
+        torque_amplitudes=torque,
+        periodicity_residual=float(cycle.periodicity_residual),
+    )
+
+
+_WAVES: Sequence[str] = (
+    "lift",
+    "velocity",
+    "acceleration",
+    "jerk",
+    "volume",
+    "chamber_pressure",
+    "supply_flow",
+    "return_flow",
+    "leakage_flow",
+    "contact_force",
+    "contact_stress",
+    "torque",
+)
+
+
+def _duty(point: OperatingPoint) -> Duty:
+    return Duty(
+        float(point.shaft_speed),
+        float(point.supply_pressure),
+        float(point.return_pressure),
+        float(point.case_pressure),
+        float(point.weight),
+    )

@@ -1,0 +1,208 @@
+"""The report's tables: results before and after, variables, checks, search."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from camring.interfaces.report.data import (
+    Constraint,
+    Design,
+    ReportData,
+    Result,
+    Search,
+    Variable,
+    Verdict,
+)
+from camring.interfaces.report.pictures.losses import balance_residual
+from camring.interfaces.report.pictures.margins import plain_name
+from camring.interfaces.report.quantities import GROUPS, Quantity, change, significant
+from camring.interfaces.report.svg import element, escape
+
+__all__ = [
+    "check_table",
+    "constraint_table",
+    "error_table",
+    "leave_one_out_table",
+    "pairs_table",
+    "result_table",
+    "variable_table",
+]
+
+
+def _table(
+    head: Sequence[tuple[str, str]], rows: Iterable[str], caption: str, kind: str = ""
+) -> str:
+    """A table; `head` holds (text, class) of the columns, rows are markup."""
+    cells = "".join(
+        element("th", escape(text), scope="col", class_=style or None) for text, style in head
+    )
+    table = element(
+        "table",
+        element("caption", escape(caption)),
+        element("thead", element("tr", cells)),
+        element("tbody", *rows),
+        class_=kind or None,
+    )
+    return element("div", table, class_="scroll")
+
+
+def _row(name: str, *cells: tuple[str, str]) -> str:
+    head = element("th", escape(name), scope="row")
+    return element(
+        "tr", head, *(element("td", escape(text), class_=style or None) for text, style in cells)
+    )
+
+
+def result_table(designs: Sequence[Design], duty: int) -> str:
+    """Every result at one operating point; with two designs also the change."""
+    columns = 2 + len(designs) + 2 * (len(designs) == 2)
+    rows = []
+    for title, group in GROUPS:
+        held = [_result_row(q, [d.results[duty] for d in designs]) for q in group]
+        held = [row for row in held if row]
+        if held:
+            rows.append(
+                element(
+                    "tr",
+                    element("th", escape(title), scope="rowgroup", colspan=columns, class_="group"),
+                )
+            )
+            rows += held
+    head = [("Result", ""), ("Unit", ""), *((d.label.capitalize(), "n") for d in designs)]
+    if len(designs) == 2:
+        head += [("Change", "n"), ("", "")]
+    point = designs[-1].results[duty].duty
+    caption = (
+        f"Results at {point.name} supply, {1e-5 * point.return_pressure:.4g} bar return, "
+        f"{1e-5 * point.case_pressure:.4g} bar case (absolute)"
+    )
+    return _table(head, rows, caption)
+
+
+def _result_row(quantity: Quantity, results: Sequence[Result]) -> str:
+    values = [result.metrics.get(quantity.name) for result in results]
+    if any(value is None for value in values):
+        return ""
+    numbers = [float(value) for value in values if value is not None]
+    cells = [(quantity.unit, "unit"), *((quantity.written(v), "n") for v in numbers)]
+    if len(numbers) == 2:
+        text, better = change(quantity, *numbers)
+        word, style = {1: ("better", "better"), -1: ("worse", "worse"), 0: ("", "same")}[better]
+        cells += [(text, f"n {style}"), (word, style)]
+    return _row(quantity.label, *cells)
+
+
+def constraint_table(constraints: Sequence[Constraint], designs: Sequence[Design]) -> str:
+    """Limits with values and margins as text, for readers of numbers and of screens aloud."""
+    head = [("Constraint", ""), ("Limit", "")]
+    for design in designs:
+        head += [(design.label.capitalize(), "n"), ("Margin", "n")]
+    rows = []
+    for constraint in constraints:
+        cells = [(constraint.limit, "unit")]
+        for value, margin in zip(constraint.values, constraint.margins, strict=True):
+            broken = margin < 0
+            text = f"{significant(100 * margin, 3)} %" + (" broken" if broken else "")
+            cells += [(value, "n"), (text, "n broken" if broken else "n")]
+        rows.append(_row(plain_name(constraint.name), *cells))
+    return _table(head, rows, "Limits, worst values over the operating points, and margins")
+
+
+def variable_table(variables: Sequence[Variable], designs: Sequence[Design]) -> str:
+    """Design variables with bounds and values; a little bar shows where between them."""
+    labels = [d.label.capitalize() for d in designs]
+    head = [("Variable", ""), ("Unit", ""), ("From", "n"), ("To", "n")]
+    head += [(label, "n") for label in labels]
+    head.append(("Place between the bounds", ""))
+    rows = []
+    for variable in variables:
+        cells = [
+            element("td", escape(variable.unit), class_="unit"),
+            element("td", escape(_plainly(variable.low)), class_="n"),
+            element("td", escape(_plainly(variable.high)), class_="n"),
+        ]
+        cells += [element("td", escape(_plainly(v)), class_="n") for v in variable.values]
+        cells.append(element("td", _place(variable)))
+        name = element("th", element("code", escape(variable.name)), scope="row")
+        rows.append(element("tr", name, *cells))
+    return _table(head, rows, "What the search was allowed to change")
+
+
+def _plainly(value: float) -> str:
+    return f"{value:.5g}".replace("-", "−") if np.isfinite(value) else "–"
+
+
+def _place(variable: Variable) -> str:
+    span = variable.high - variable.low
+    ticks = []
+    for k, value in enumerate(variable.values[:2]):
+        part = float(np.clip((value - variable.low) / span, 0, 1)) if span > 0 else 0.5
+        was = "was" if k == 0 and len(variable.values) > 1 else None
+        ticks.append(element("i", class_=was, style=f"left:{117 * part:.0f}px"))
+    return element("span", *ticks, class_="bar", aria_hidden="true")
+
+
+def check_table(verdict: Verdict) -> str:
+    """What validation looked at, one line each."""
+    rows = [
+        _row(
+            c.name,
+            ("passed" if c.passed else "failed", "" if c.passed else "broken"),
+            (c.detail, ""),
+        )
+        for c in verdict.checks
+    ]
+    return _table([("Check", ""), ("Outcome", ""), ("Found", "")], rows, "Validation")
+
+
+def leave_one_out_table(search: Search) -> str:
+    """How well each surrogate foretold designs it had not seen."""
+    rows = [
+        _row(
+            name,
+            (significant(error, 3), "n"),
+            ("used" if name == search.surrogate_used else "", ""),
+        )
+        for name, error in search.leave_one_out.items()
+    ]
+    head = [("Surrogate", ""), ("Leave-one-out error of J (rms)", "n"), ("", "")]
+    return _table(head, rows, "Surrogates compared on designs left out", "narrow")
+
+
+def error_table(data: ReportData) -> str:
+    """Numerical quality of every simulation behind the report."""
+    rows = []
+    for design in data.designs:
+        for result in design.results:
+            rows.append(
+                _row(
+                    f"{design.label}, {result.duty.name}",
+                    (_small(result.numerical_error), "n"),
+                    (_small(result.periodicity_residual), "n"),
+                    (_small(balance_residual(dict(result.metrics))), "n"),
+                )
+            )
+    head = [
+        ("Simulation", ""),
+        ("Estimated error", "n"),
+        ("Periodicity residual", "n"),
+        ("Power balance residual", "n"),
+    ]
+    return _table(head, rows, "Numerical quality, relative")
+
+
+def _small(value: float) -> str:
+    """A residual as 4.0·10⁻⁶."""
+    if not np.isfinite(value):
+        return "–"
+    if value == 0:
+        return "0"
+    digits, _, power = f"{abs(value):.1e}".partition("e")
+    raised = str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{digits}·10{raised}"
+
+
+def pairs_table(pairs: Iterable[tuple[str, str]]) -> str:
+    """Names and values, such as versions, without a head."""
+    rows = [_row(name, (value, "")) for name, value in pairs]
+    return element("table", element("tbody", *rows), class_="narrow")

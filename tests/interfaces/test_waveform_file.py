@@ -1,0 +1,146 @@
+"""A waveform file explains itself, and is whole or not there."""
+
+import math
+
+import equinox as eqx
+import h5py
+import motors
+import numpy as np
+import pytest
+import xarray
+
+from camring.interfaces import waveform_file
+from camring.interfaces.errors import InputError
+from camring.interfaces.waveform_file import WAVEFORMS, write_waveforms
+from camring.physics.cycle import simulate
+from camring.physics.resolution import Resolution
+from camring.physics.system import System
+
+ASKED = {
+    "lift",
+    "velocity",
+    "acceleration",
+    "jerk",
+    "volume",
+    "chamber_pressure",
+    "supply_flow",
+    "return_flow",
+    "leakage_flow",
+    "contact_force",
+    "contact_stress",
+    "torque",
+}
+
+
+@pytest.fixture(scope="module")
+def simulated():
+    case = motors.sound_case(0)
+    slow = eqx.tree_at(lambda p: p.shaft_speed, case.point, case.point.shaft_speed / 2)
+    system = System(case.motor, case.fluid, (case.point, slow))
+    run = eqx.filter_jit(simulate)
+    cycles = [
+        run(system.motor, system.fluid, point, Resolution.coarse())
+        for point in system.operating_points
+    ]
+    return system, cycles
+
+
+@pytest.fixture(scope="module")
+def dataset(simulated, tmp_path_factory):
+    path = tmp_path_factory.mktemp("waveforms") / "out.nc"
+    write_waveforms(path, *simulated, source="[motor]\npistons = 8\n", samples=720)
+    with xarray.open_dataset(path) as opened:
+        yield opened.load()
+
+
+def test_what_was_asked_for_is_there_with_units(dataset):
+    assert set(dataset.data_vars) == ASKED == set(WAVEFORMS)
+    for variable in dataset.data_vars.values():
+        assert variable.dims == ("operating_point", "angle")
+        assert variable.attrs["units"]
+        assert variable.attrs["long_name"]
+        assert np.isfinite(variable).all()
+    for coordinate in dataset.coords.values():
+        assert coordinate.attrs["units"]
+
+
+def test_the_angle_is_one_revolution_of_the_shaft(dataset):
+    angle = dataset.angle.to_numpy()
+    assert dataset.angle.attrs["units"] == "rad"
+    np.testing.assert_allclose(angle, 2 * math.pi * np.arange(720) / 720)
+
+
+def test_operating_points_carry_their_duty(dataset, simulated):
+    system, _ = simulated
+    for name in ("shaft_speed", "supply_pressure", "return_pressure", "case_pressure"):
+        wanted = [float(getattr(point, name)) for point in system.operating_points]
+        np.testing.assert_array_equal(dataset[name], wanted)
+
+
+def test_the_waveforms_belong_together(dataset, simulated):
+    system, _ = simulated
+    motor = system.motor
+    # Piston volume follows lift, and lift repeats with the lobes.
+    volume = float(motor.dead_volume) + float(motor.piston.area) * dataset.lift
+    np.testing.assert_allclose(dataset.volume, volume, rtol=1e-12)
+    lift = dataset.lift.to_numpy()
+    lobe = 720 // motor.lobes
+    np.testing.assert_allclose(lift[:, :lobe], lift[:, lobe : 2 * lobe], atol=1e-15)
+    # Shaft speed halves the velocity of the second point.
+    np.testing.assert_allclose(dataset.velocity[0], 2 * dataset.velocity[1], rtol=1e-12)
+
+
+def test_the_file_says_where_it_comes_from(dataset):
+    assert "camring" in dataset.attrs["source"]
+    assert dataset.attrs["motor_file"] == "[motor]\npistons = 8\n"
+    assert dataset.attrs["pistons"] == 8
+
+
+def test_other_programs_can_read_it(simulated, tmp_path):
+    path = write_waveforms(tmp_path / "out.nc", *simulated, samples=360)
+    with h5py.File(path) as file:
+        assert file["torque"].shape == (2, 360)
+        assert file["torque"].attrs["units"] == "N m"
+        assert file["angle"].shape == (360,)
+
+
+def test_a_new_file_replaces_an_old_one_whole(simulated, tmp_path):
+    path = tmp_path / "out.nc"
+    write_waveforms(path, *simulated, samples=360)
+    write_waveforms(path, *simulated, samples=720)
+    with xarray.open_dataset(path) as opened:
+        assert opened.sizes["angle"] == 720
+    assert [each.name for each in tmp_path.iterdir()] == ["out.nc"]
+
+
+def test_a_write_that_fails_leaves_the_old_file_alone(simulated, tmp_path, monkeypatch):
+    path = write_waveforms(tmp_path / "out.nc", *simulated, samples=360)
+    before = path.read_bytes()
+
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(xarray.Dataset, "to_netcdf", full)
+    with pytest.raises(InputError, match="No space left"):
+        write_waveforms(path, *simulated, samples=360)
+    assert path.read_bytes() == before
+    assert [each.name for each in tmp_path.iterdir()] == ["out.nc"]
+
+
+def test_a_motor_file_is_never_replaced_by_waveforms(simulated, tmp_path):
+    path = tmp_path / "motor.toml"
+    path.write_text("[motor]\n")
+    with pytest.raises(InputError, match="no NetCDF file"):
+        write_waveforms(path, *simulated)
+    assert path.read_text() == "[motor]\n"
+
+
+def test_a_place_that_does_not_exist_is_said_in_a_sentence(simulated, tmp_path):
+    with pytest.raises(InputError, match="no existing folder"):
+        write_waveforms(tmp_path / "absent" / "out.nc", *simulated)
+    with pytest.raises(InputError, match="is a folder"):
+        write_waveforms(tmp_path, *simulated)
+
+
+def test_a_tenth_of_a_degree_is_the_default():
+    assert waveform_file.SAMPLES == 3600
