@@ -43,7 +43,7 @@ class Wanderer(AbstractStrategy):
 
 def evaluate(point, seconds=0.0):
     time.sleep(seconds)
-    if point[0] > 0.97:
+    if point[0] > 0.55:
         raise ValueError("the first number is too large")
     distance = float(np.sum((point - [0.3, 0.6, 0.1]) ** 2))
     limits = {"edge": float(0.2 - point[0]), "sum": float(np.sum(point) - 1.4)}

@@ -34,6 +34,11 @@ def record(trial, objective=1.0, constraint=-0.5, **changes):
     return Record(trial, "sobol", point, outcome, started=1.7e9 + trial, seconds=0.25, **changes)
 
 
+def append_many(store):
+    for trial in range(1, 1000):
+        store.append(record(trial), {"step": 1})
+
+
 def test_every_number_comes_back_to_the_last_bit(store):
     given = record(0)
     store.append(given, {"step": 0.1 + 0.2, "seen": [1, 2]})
@@ -101,9 +106,8 @@ def test_a_full_database_loses_no_completed_evaluation(tmp_path, store):
     connection = store._connection
     (pages,) = connection.execute("PRAGMA page_count").fetchone()
     connection.execute(f"PRAGMA max_page_count = {pages}")
-    with pytest.raises(StudyError, match="takes no more.*camring resume"):
-        for trial in range(1, 1000):
-            store.append(record(trial), {"step": 1})
+    with pytest.raises(StudyError, match=r"takes no more.*camring resume"):
+        append_many(store)
     kept = store.records()
     connection.execute("PRAGMA max_page_count = 100000")
     store.append(record(len(kept)), {"step": 2})

@@ -100,7 +100,7 @@ def test_what_is_no_study_is_refused(tmp_path, kind):
     elif kind == "file":
         place.write_text("text")
     for write in (True, False):
-        with pytest.raises(InputError, match="(holds no study|is no folder of a study)"):
+        with pytest.raises(InputError, match=r"(holds no study|is no folder of a study)"):
             StudyFolder.open(place, write=write)
 
 

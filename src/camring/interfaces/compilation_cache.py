@@ -49,23 +49,23 @@ def private_folder() -> Path | None:
     choice = os.environ.get(SWITCH, "")
     if choice.lower() in ("off", "0", "no", "false"):
         return None
-    if choice:
-        base = Path(choice)
-    else:
-        home = os.environ.get("XDG_CACHE_HOME", "")
-        # The specification: a relative XDG_CACHE_HOME is to be ignored.
-        parent = Path(home) if os.path.isabs(home) else Path.home() / ".cache"
-        base = parent / "camring"
-    folder = base / f"compiled-{_this_machine()}"
     try:
+        base = Path(choice) if choice else _cache_home() / "camring"
+        folder = base / f"compiled-{_this_machine()}"
         base.parent.mkdir(parents=True, exist_ok=True)
         for level in (base, folder):
             level.mkdir(mode=0o700, exist_ok=True)
             if not _private(level):
                 return None
-    except (OSError, RuntimeError):
+    except (OSError, RuntimeError):  # the second when there is no home at all
         return None
     return folder if os.access(folder, os.W_OK | os.X_OK) else None
+
+
+def _cache_home() -> Path:
+    home = os.environ.get("XDG_CACHE_HOME", "")
+    # The specification: a relative one is to be ignored.
+    return Path(home) if os.path.isabs(home) else Path.home() / ".cache"
 
 
 def _private(folder: Path) -> bool:

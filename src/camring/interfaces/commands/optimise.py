@@ -1,0 +1,47 @@
+"""`camring optimise`: from a motor file to a better, checked motor."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def optimise(
+    motor: Annotated[Path, typer.Argument(help="Motor file with a [design_space].")],
+    out: Annotated[Path, typer.Option("--out", help="Folder to make; nothing may be there.")],
+    budget: Annotated[
+        int | None,
+        typer.Option(min=1, help="Model evaluations in all; else that of the file, or 300."),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, help="Where all chance comes from; else that of the file, or 0."),
+    ] = None,
+    theory: Annotated[
+        bool,
+        typer.Option(
+            "--theory/--no-theory",
+            help="Begin also from cams of zero geometric ripple, where the space holds them.",
+        ),
+    ] = True,
+    workers: Annotated[
+        int, typer.Option(min=0, help="Processes that evaluate; 0 evaluates in this one.")
+    ] = 0,
+    json: Annotated[
+        bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
+    ] = False,
+) -> None:
+    """Search for a better cam ring and valve timing, check what was found, and report.
+
+    The folder gets best.toml (a complete motor file), report.html, validation.json
+    and study.sqlite, which holds every evaluation. Ctrl-C stops at any time and
+    loses nothing; `camring resume FOLDER` goes on.
+    """
+    from camring.interfaces.finish import show
+    from camring.interfaces.progress import SearchProgress
+    from camring.interfaces.study import optimise
+
+    finished = optimise(
+        motor, out, budget=budget, seed=seed, theory=theory, workers=workers, watch=SearchProgress
+    )
+    raise typer.Exit(show(finished, as_json=json))

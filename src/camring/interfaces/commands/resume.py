@@ -1,0 +1,28 @@
+"""`camring resume`: go on with a study that was stopped."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def resume(
+    folder: Annotated[Path, typer.Argument(help="Folder of a study.")],
+    budget: Annotated[
+        int | None,
+        typer.Option(min=1, help="Model evaluations in all; else that which the study began with."),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
+    ] = False,
+) -> None:
+    """Go on with a study as if it had never stopped.
+
+    The designs that follow are the same, bit for bit, as those of a study that
+    was not interrupted. A study that has ended is checked and reported again.
+    """
+    from camring.interfaces.finish import show
+    from camring.interfaces.progress import SearchProgress
+    from camring.interfaces.study import resume
+
+    raise typer.Exit(show(resume(folder, budget=budget, watch=SearchProgress), as_json=json))
