@@ -119,18 +119,21 @@ def zero_ripple_cams(pistons: int, lobes: int, count: int, degree: int = 3) -> I
     if count % 2 or count % phases or phases < 2:
         return
     longest = count // 2 - (degree - 1)
+    seen: set[tuple[float, ...]] = set()
     for j in range(1, phases):
         box = j * count // phases
         for kernel in _kernels(longest - box + 1):
-            length = box + len(kernel) - 1
+            steps = np.convolve(np.ones(box), kernel)
+            key = tuple(np.round(steps / np.sum(steps), 12))
             # Else the dead centre lies between two control values.
-            if (3 * count // 2 + length) % 2 == 0:
-                yield ZeroRipple(np.convolve(np.ones(box), kernel), box, kernel)
+            centred = (3 * count // 2 + len(steps)) % 2 == 0
+            if centred and key not in seen:
+                seen.add(key)
+                yield ZeroRipple(steps, box, kernel)
 
 
 def _kernels(longest: int) -> Iterator[Float[np.ndarray, " tap"]]:
-    """Symmetric non-negative kernels, each once: boxes, boxes of boxes, binomials, tapers."""
-    seen: set[tuple[float, ...]] = set()
+    """Symmetric non-negative kernels: boxes, boxes of boxes, binomials, tapers."""
     for length in range(1, longest + 1):
         candidates = [np.ones(length), np.array([comb(length - 1, k) for k in range(length)])]
         for inner in range(2, length):
@@ -139,9 +142,4 @@ def _kernels(longest: int) -> Iterator[Float[np.ndarray, " tap"]]:
             candidates += [
                 np.array([edge, *[1.0] * (length - 2), edge]) for edge in (0.25, 0.5, 2.0, 4.0)
             ]
-        for kernel in candidates:
-            normal = kernel / np.sum(kernel)
-            key = tuple(np.round(normal, 12))
-            if key not in seen:
-                seen.add(key)
-                yield normal
+        yield from (kernel / np.sum(kernel) for kernel in candidates)

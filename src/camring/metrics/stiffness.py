@@ -1,0 +1,33 @@
+"""Hydraulic stiffness of a chamber, and the oscillator it would make with a piston.
+
+The cam prescribes the motion, so nothing here can ring; the numbers describe
+the derivation's small-signal picture and are reported for comparison.
+"""
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from camring.numerics.quantity import Q
+from camring.physics.cycle import Cycle
+
+
+class Oscillator(eqx.Module):
+    """A piston's mass on its chamber's oil. model.md section 4."""
+
+    stiffness: Q[Float[Array, ""], "N/m"]
+    natural_frequency: Q[Float[Array, ""], "rad/s"]
+    damping_ratio: Q[Float[Array, ""], "1"]
+
+
+def oscillator(cycle: Cycle, mean_volume: Q[Float[Array, ""], "m3"]) -> Oscillator:
+    """`kf = beta Ap^2 / mean V`, its frequency with the piston's mass, and the damping ratio."""
+    motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
+    modulus = fluid.bulk_modulus_at((point.supply_pressure + point.return_pressure) / 2)
+    stiffness = modulus * motor.piston.area**2 / mean_volume
+    damping = motor.friction.viscous_damping(motor.piston, fluid)
+    return Oscillator(
+        stiffness,
+        jnp.sqrt(stiffness / motor.piston.mass),
+        damping / (2 * jnp.sqrt(motor.piston.mass * stiffness)),
+    )

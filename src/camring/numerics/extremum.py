@@ -1,0 +1,41 @@
+"""Largest value of a piecewise smooth function, found between its samples."""
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Float
+
+EXTREMUM_FRACTIONS = np.linspace(0, 1, 5)
+"""Where `maximum` wants its elements sampled: ends, quarters and middle."""
+
+
+def maximum(samples: Float[Array, "element 5"]) -> Float[Array, ""]:
+    """Maximum over all elements, each sampled at `EXTREMUM_FRACTIONS`.
+
+    The best sample is refined by the parabola through it and its neighbours
+    inside the same element, so a kink between elements is left alone.
+    """
+    element, sample = jnp.divmod(jnp.argmax(samples), samples.shape[1])
+    middle = jnp.clip(sample, 1, samples.shape[1] - 2)
+    row = samples[element]
+    before, here, after = row[middle - 1], row[middle], row[middle + 1]
+    return jnp.maximum(row[sample], vertex_value(before, here, after))
+
+
+def minimum(samples: Float[Array, "element 5"]) -> Float[Array, ""]:
+    """Minimum over all elements; see `maximum`."""
+    return -maximum(-samples)
+
+
+def vertex_value(
+    before: Float[Array, "*grid"], here: Float[Array, "*grid"], after: Float[Array, "*grid"]
+) -> Float[Array, "*grid"]:
+    """Top of the parabola through three equidistant values, within their span.
+
+    Where they bend upwards or the top lies outside, the largest of the three.
+    """
+    slope = (after - before) / 2
+    bend = before - 2 * here + after
+    offset = -slope / jnp.where(bend < 0, bend, -1.0)
+    inside = (bend < 0) & (jnp.abs(offset) <= 1)
+    top = here - slope**2 / (2 * jnp.where(bend < 0, bend, -1.0))
+    return jnp.where(inside, top, jnp.maximum(jnp.maximum(before, after), here))

@@ -1,0 +1,23 @@
+"""Units in annotations, and the float64 arrays that carry them.
+
+`Q[Float[Array, "*grid"], "Pa"]` says shape and unit of a number at the place
+where it is declared. Nothing converts units inside the program (everything is
+SI); the annotation is documentation that a test makes true by rescaling the
+metre, the kilogram and the second.
+"""
+
+from typing import Annotated as Q
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+from jaxtyping import ArrayLike as ArrayLike
+
+jax.config.update("jax_enable_x64", True)
+
+__all__ = ["Q", "real"]
+
+
+def real(value: ArrayLike) -> Float[Array, "..."]:
+    """The value as a float64 array: the converter of every number a noun holds."""
+    return jnp.asarray(value, dtype=jnp.float64)

@@ -1,0 +1,121 @@
+"""What is forbidden: limits on results, each as a dimensionless `g <= 0`.
+
+An upper limit gives `(value - limit)/|limit|`, a lower one its mirror; the
+margin against cavitation is counted in pressure drops and that against
+lift-off in pressure forces (model.md section 8). A limit that is not set is
+not a constraint; chamber volume must always be positive.
+"""
+
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from camring.metrics.summary import Metrics
+from camring.physics.system import System
+
+UPPER_LIMITS = {
+    "max_pressure": "max_pressure",
+    "max_contact_stress": "max_contact_stress",
+    "max_pressure_angle": "max_pressure_angle",
+    "max_velocity": "max_velocity",
+    "max_acceleration": "max_acceleration",
+    "max_jerk": "max_jerk",
+}
+"""Constraint name to the result it bounds from above."""
+
+LOWER_LIMITS = {
+    "min_undercut_factor": "min_undercut_factor",
+    "min_damping_ratio": "damping_ratio",
+    "min_mean_torque": "mean_torque",
+}
+"""Constraint name to the result it bounds from below."""
+
+BANDS = {
+    "displacement": ("displacement", "displacement"),
+    "stroke": ("stroke", "stroke"),
+    "lift": ("min_lift", "max_lift"),
+}
+"""Constraint name to the results its lower and upper end bound."""
+
+
+@dataclass(frozen=True)
+class Constraints:
+    """Limits in SI; `None` is no limit. `min_pressure` defaults to the vapour pressure."""
+
+    min_pressure: float | None = None
+    max_pressure: float | None = None
+    max_contact_stress: float | None = None
+    min_contact_force: float | None = None
+    max_pressure_angle: float | None = None
+    min_undercut_factor: float | None = None
+    max_velocity: float | None = None
+    max_acceleration: float | None = None
+    max_jerk: float | None = None
+    min_damping_ratio: float | None = None
+    min_mean_torque: float | None = None
+    displacement: tuple[float, float] | None = None
+    stroke: tuple[float, float] | None = None
+    lift: tuple[float, float] | None = None
+
+    def names(self) -> tuple[str, ...]:
+        """Constraints in the order in which `violations` reports them."""
+        named = ["min_pressure", "chamber_volume"]
+        if self.min_contact_force is not None:
+            named.append("min_contact_force")
+        named += [name for name in UPPER_LIMITS if getattr(self, name) is not None]
+        named += [name for name in LOWER_LIMITS if getattr(self, name) is not None]
+        for name in BANDS:
+            if getattr(self, name) is not None:
+                named += [f"{name}_low", f"{name}_high"]
+        return tuple(named)
+
+
+def violations(
+    constraints: Constraints, system: System, metrics: tuple[Metrics, ...]
+) -> dict[str, Float[Array, ""]]:
+    """Each constraint's `g`, the worst over the operating points; `g <= 0` holds."""
+    each = [
+        _at_point(constraints, system, drop, results)
+        for drop, results in zip(
+            (point.pressure_drop for point in system.operating_points), metrics, strict=True
+        )
+    ]
+    return {
+        name: jnp.max(jnp.stack([found[name] for found in each])) for name in constraints.names()
+    }
+
+
+def _at_point(
+    constraints: Constraints, system: System, drop: Float[Array, ""], metrics: Metrics
+) -> dict[str, Float[Array, ""]]:
+    motor = system.motor
+    least = constraints.min_pressure
+    least = system.fluid.vapour_pressure if least is None else least
+    found = {
+        "min_pressure": (least - metrics.min_pressure) / drop,
+        "chamber_volume": -metrics.min_volume / motor.dead_volume,
+    }
+    if constraints.min_contact_force is not None:
+        short = constraints.min_contact_force - metrics.min_contact_force
+        found["min_contact_force"] = short / (motor.piston.area * drop)
+    for name, result in UPPER_LIMITS.items():
+        limit = getattr(constraints, name)
+        if limit is not None:
+            found[name] = (getattr(metrics, result) - limit) / abs(limit)
+    for name, result in LOWER_LIMITS.items():
+        limit = getattr(constraints, name)
+        if limit is not None:
+            found[name] = (limit - getattr(metrics, result)) / (abs(limit) or 1.0)
+    for name, (lowest, highest) in BANDS.items():
+        band = getattr(constraints, name)
+        if band is not None:
+            low, high = band
+            found[f"{name}_low"] = (low - getattr(metrics, lowest)) / (abs(low) or high - low)
+            found[f"{name}_high"] = (getattr(metrics, highest) - high) / (abs(high) or high - low)
+    return found
+
+
+def penalty(found: dict[str, Float[Array, "*batch"]], factor: float) -> Float[Array, "*batch"]:
+    """`lambda * sum max(0, g)^2`."""
+    return factor * sum(jnp.maximum(g, 0) ** 2 for g in found.values())

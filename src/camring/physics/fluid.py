@@ -1,0 +1,132 @@
+"""The oil: how much of it a chamber holds at a pressure, and what that pressure costs.
+
+The chamber balances an *amount* of oil. For the derivation's law the amount is
+a volume, for a mass-conserving law it is a mass; both are amount per volume
+`content(P)` times volume, and power is amount flow times `potential(P)`. One
+pressure equation then serves every fluid:
+
+    content'(P) V dP/dt = sum of amount flows - content(P) dV/dt
+"""
+
+from abc import abstractmethod
+
+import equinox as eqx
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+from camring.numerics.quantity import Q, real
+
+Pressure = Q[Float[Array, "*grid"], "Pa"]
+
+
+class AbstractFluid(eqx.Module):
+    """An oil whose state is its pressure alone."""
+
+    density: eqx.AbstractVar[Q[Float[Array, ""], "kg/m3"]]
+    """Density of the liquid at atmospheric pressure."""
+    vapour_pressure: eqx.AbstractVar[Q[Float[Array, ""], "Pa"]]
+    transition_pressure: eqx.AbstractVar[Q[Float[Array, ""], "Pa"]]
+
+    @abstractmethod
+    def density_at(self, pressure: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
+        """Density at a pressure."""
+
+    @abstractmethod
+    def bulk_modulus_at(self, pressure: Pressure) -> Pressure:
+        """Tangent bulk modulus `rho dP/drho` at a pressure."""
+
+    @abstractmethod
+    def content(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        """Amount of oil in a unit of volume; an amount is what is conserved."""
+
+    @abstractmethod
+    def content_slope(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        """Derivative of the content with respect to pressure."""
+
+    @abstractmethod
+    def carried(self, upstream: Pressure, downstream: Pressure) -> Float[Array, "*grid"]:
+        """Amount in a unit of volume flowing between two pressures, either way round."""
+
+    @abstractmethod
+    def flowing_density(self, one: Pressure, other: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
+        """Density that an orifice between two pressures sees."""
+
+    @abstractmethod
+    def potential(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        """Energy a unit amount brings with it at a pressure, up to a constant."""
+
+    @abstractmethod
+    def compression_power(
+        self,
+        pressure: Pressure,
+        return_pressure: Pressure,
+        volume: Q[Float[Array, "*grid"], "m3"],
+        pressure_rate: Q[Float[Array, "*grid"], "Pa/s"],
+    ) -> Q[Float[Array, "*grid"], "W"]:
+        """Power the balance of this law leaves in compressing the chamber's oil."""
+
+    @abstractmethod
+    def state(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        """The variable in which the pressure equation is solved."""
+
+    @abstractmethod
+    def state_slope(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        """Derivative of the state with respect to pressure."""
+
+    @abstractmethod
+    def pressure(self, state: Float[Array, "*grid"]) -> Pressure:
+        """Pressure of a state: the inverse of `state`."""
+
+
+class ConstantFluid(AbstractFluid):
+    """Constant density and bulk modulus, volume flow conserved: the derivation's oil.
+
+    A first rung: it lets pressure fall below zero, where a real oil releases
+    air and vaporises, and volume flow at port and at chamber pressure are not
+    told apart, which leaves a compression term in the power balance
+    (model.md sections 3 and 6).
+    """
+
+    density: Q[Float[Array, ""], "kg/m3"] = eqx.field(converter=real)
+    bulk_modulus: Q[Float[Array, ""], "Pa"] = eqx.field(converter=real)
+    vapour_pressure: Q[Float[Array, ""], "Pa"] = eqx.field(converter=real)
+    transition_pressure: Q[Float[Array, ""], "Pa"] = eqx.field(converter=real, default=1e5)
+
+    def density_at(self, pressure: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
+        return jnp.broadcast_to(self.density, jnp.shape(pressure))
+
+    def bulk_modulus_at(self, pressure: Pressure) -> Pressure:
+        return jnp.broadcast_to(self.bulk_modulus, jnp.shape(pressure))
+
+    def content(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        return jnp.ones_like(pressure)
+
+    def content_slope(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        return jnp.broadcast_to(1 / self.bulk_modulus, jnp.shape(pressure))
+
+    def carried(self, upstream: Pressure, downstream: Pressure) -> Float[Array, "*grid"]:
+        return jnp.ones_like(downstream)
+
+    def flowing_density(self, one: Pressure, other: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
+        return self.density
+
+    def potential(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        return pressure
+
+    def compression_power(
+        self,
+        pressure: Pressure,
+        return_pressure: Pressure,
+        volume: Q[Float[Array, "*grid"], "m3"],
+        pressure_rate: Q[Float[Array, "*grid"], "Pa/s"],
+    ) -> Q[Float[Array, "*grid"], "W"]:
+        return (pressure - return_pressure) * volume / self.bulk_modulus * pressure_rate
+
+    def state(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        return pressure
+
+    def state_slope(self, pressure: Pressure) -> Float[Array, "*grid"]:
+        return jnp.ones_like(pressure)
+
+    def pressure(self, state: Float[Array, "*grid"]) -> Pressure:
+        return state

@@ -1,0 +1,27 @@
+"""The radial force that presses a piston and its roller on the cam."""
+
+from jaxtyping import Array, Float
+
+from camring.geometry.piston import Piston
+from camring.numerics.quantity import Q
+from camring.numerics.spline import Jet
+
+
+def radial_force(
+    piston: Piston,
+    pressure: Q[Float[Array, "*grid"], "Pa"],
+    case_pressure: Q[Float[Array, ""], "Pa"],
+    radius: Jet,
+    shaft_speed: Q[Float[Array, ""], "rad/s"],
+    viscous_damping: Q[Float[Array, ""], "N.s/m"],
+) -> Q[Float[Array, "*grid"], "N"]:
+    """`F = Ap (P - P_case) - mp w^2 s'' - cm w s'`; negative means lift-off.
+
+    model.md section 4. The radial acceleration is that along the bore: the
+    centrifugal part of the turning block is left out, as in the derivation.
+    """
+    return (
+        piston.area * (pressure - case_pressure)
+        - piston.mass * shaft_speed**2 * radius.second
+        - viscous_damping * shaft_speed * radius.first
+    )

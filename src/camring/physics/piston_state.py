@@ -1,0 +1,78 @@
+"""Everything the reference piston does, read off a cycle at chosen angles."""
+
+import equinox as eqx
+from jaxtyping import Array, Float
+
+from camring.numerics.quantity import Q
+from camring.numerics.spline import Jet
+from camring.physics.contact import hertz_stress, normal_force
+from camring.physics.cycle import Cycle, chamber_at, chamber_between
+from camring.physics.force import radial_force
+from camring.physics.pressure import Chamber, port_flows
+from camring.physics.torque import torque_by_virtual_work
+
+
+class PistonState(eqx.Module):
+    """Everything one piston does at a set of angles; arrays of one shape."""
+
+    angle: Q[Float[Array, "*grid"], "rad"]
+    radius: Jet
+    chamber: Chamber
+    lift: Q[Float[Array, "*grid"], "m"]
+    chamber_pressure: Q[Float[Array, "*grid"], "Pa"]
+    supply_flow: Q[Float[Array, "*grid"], "amount/s"]
+    return_flow: Q[Float[Array, "*grid"], "amount/s"]
+    leakage_flow: Q[Float[Array, "*grid"], "amount/s"]
+    force: Q[Float[Array, "*grid"], "N"]
+    contact_force: Q[Float[Array, "*grid"], "N"]
+    contact_stress: Q[Float[Array, "*grid"], "Pa"]
+    friction_torque: Q[Float[Array, "*grid"], "N.m"]
+    torque: Q[Float[Array, "*grid"], "N.m"]
+
+
+def sample_elements(cycle: Cycle, fraction: Float[Array, " point"]) -> PistonState:
+    """The reference piston at the same fractions of every element, arrays (element, point)."""
+    mesh = cycle.orbit.mesh
+    radius, chamber = chamber_between(
+        cycle.motor, cycle.reference_radius, mesh.start, mesh.width, fraction
+    )
+    angle = mesh.start[:, None] + mesh.width[:, None] * fraction
+    return _state(cycle, angle, radius, chamber, cycle.orbit.at(fraction))
+
+
+def sample_angles(cycle: Cycle, angle: Q[Float[Array, "*grid"], "rad"]) -> PistonState:
+    """The reference piston at any angles, taken modulo the cam's period."""
+    mesh, period = cycle.orbit.mesh, cycle.motor.cam.period
+    first = mesh.start[0]
+    within = first + (angle - first) % period
+    state = cycle.orbit.at_positions(within)
+    radius = cycle.motor.cam.pitch_radius(within)
+    chamber = chamber_at(cycle.motor, cycle.reference_radius, within, radius)
+    return _state(cycle, angle, radius, chamber, state)
+
+
+def _state(cycle: Cycle, angle: Array, radius: Jet, chamber: Chamber, state: Array) -> PistonState:
+    motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
+    pressure = fluid.pressure(state)
+    flows = port_flows(motor, fluid, point, chamber, pressure)
+    damping = motor.friction.viscous_damping(motor.piston, fluid)
+    force = radial_force(
+        motor.piston, pressure, point.case_pressure, radius, point.shaft_speed, damping
+    )
+    pressing = normal_force(force, radius)
+    lost = motor.friction.loss_torque(radius, force, pressing, motor.roller)
+    return PistonState(
+        angle=angle,
+        radius=radius,
+        chamber=chamber,
+        lift=radius.value - cycle.reference_radius,
+        chamber_pressure=pressure,
+        supply_flow=flows.supply,
+        return_flow=flows.return_,
+        leakage_flow=flows.leakage,
+        force=force,
+        contact_force=pressing,
+        contact_stress=hertz_stress(pressing, radius, motor.roller, motor.ring_material),
+        friction_torque=lost,
+        torque=torque_by_virtual_work(force, radius) - lost,
+    )

@@ -1,0 +1,72 @@
+"""The chamber's pressure equation, one for every fluid and orifice law.
+
+Amount of oil in a chamber changes by what the two ports bring and leakage
+takes, and by the chamber's own volume (model.md sections 3 and 13):
+
+    content'(P) V w dP/dtheta = m_supply + m_return - m_leak - content(P) Ap w s'
+"""
+
+from typing import NamedTuple
+
+from jaxtyping import Array, Float
+
+from camring.numerics.quantity import Q
+from camring.physics.fluid import AbstractFluid
+from camring.physics.motor import Motor
+from camring.physics.operating_point import OperatingPoint
+
+
+class Chamber(NamedTuple):
+    """What a chamber is at each angle, whatever its pressure."""
+
+    supply_area: Q[Float[Array, "*grid"], "m2"]
+    return_area: Q[Float[Array, "*grid"], "m2"]
+    volume: Q[Float[Array, "*grid"], "m3"]
+    volume_slope: Q[Float[Array, "*grid"], "m3/rad"]
+
+
+class PortFlows(NamedTuple):
+    """Amounts a second into the chamber from each port, and out of it past the piston."""
+
+    supply: Float[Array, "*grid"]
+    return_: Float[Array, "*grid"]
+    leakage: Float[Array, "*grid"]
+
+
+def port_flows(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    chamber: Chamber,
+    pressure: Q[Float[Array, "*grid"], "Pa"],
+) -> PortFlows:
+    """Signed flows at a chamber pressure, in the fluid's amounts a second."""
+
+    def through(
+        area: Q[Float[Array, "*grid"], "m2"], port_pressure: Q[Float[Array, ""], "Pa"]
+    ) -> Float[Array, "*grid"]:
+        density = fluid.flowing_density(port_pressure, pressure)
+        flow = motor.orifice(area, port_pressure - pressure, density, fluid)
+        return fluid.carried(port_pressure, pressure) * flow
+
+    conductance = motor.leakage.conductance(motor.piston, fluid)
+    leakage = conductance * (pressure - point.case_pressure)
+    return PortFlows(
+        through(chamber.supply_area, point.supply_pressure),
+        through(chamber.return_area, point.return_pressure),
+        fluid.carried(point.case_pressure, pressure) * leakage,
+    )
+
+
+def pressure_slope(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    chamber: Chamber,
+    pressure: Q[Float[Array, "*grid"], "Pa"],
+) -> Q[Float[Array, "*grid"], "Pa/rad"]:
+    """dP/dtheta of a chamber, model.md sections 3 and 13."""
+    flows = port_flows(motor, fluid, point, chamber, pressure)
+    net = (flows.supply + flows.return_ - flows.leakage) / point.shaft_speed
+    swept = fluid.content(pressure) * chamber.volume_slope
+    return (net - swept) / (fluid.content_slope(pressure) * chamber.volume)

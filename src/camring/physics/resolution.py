@@ -1,0 +1,32 @@
+"""How finely a cycle is looked at: counts that shape arrays, all static."""
+
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """Mesh and spectrum sizes.
+
+    `elements` counts collocation elements between the breakpoints of a lobe
+    pitch, beside the one that each breakpoint brings. The measured errors of
+    the three named resolutions stand in the theory page; `simulate` reports an
+    estimate with every result.
+    """
+
+    elements: int = 224
+    refinements: int = 2
+    harmonics: int = 600
+
+    @classmethod
+    def coarse(cls) -> "Resolution":
+        """For searching: objective terms to about 1e-4."""
+        return cls(elements=112, refinements=1)
+
+    @classmethod
+    def fine(cls) -> "Resolution":
+        """For validation: every result to about 1e-7."""
+        return cls(elements=500)
+
+    def halved(self) -> "Resolution":
+        """The mesh an error estimate compares with."""
+        return replace(self, elements=self.elements // 2)
