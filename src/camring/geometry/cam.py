@@ -65,8 +65,8 @@ class RadialCam(AbstractCam):
     """A periodic B-spline for the radius: `r = sum_j c_j B((angle - j h)/h)`."""
 
     control_radii: Q[Float[Array, " control"], "m"] = eqx.field(converter=real)
-    repeats: int = eqx.field(static=True)
-    degree: int = eqx.field(static=True, default=3)
+    repeats: int = eqx.field(static=True, kw_only=True)
+    degree: int = eqx.field(static=True, default=3, kw_only=True)
 
     @property
     def control_count(self) -> int:
@@ -106,8 +106,8 @@ class PlanarCam(AbstractCam):
     """
 
     control_points: Q[Float[Array, "control 2"], "m"] = eqx.field(converter=real)
-    repeats: int = eqx.field(static=True)
-    degree: int = eqx.field(static=True, default=3)
+    repeats: int = eqx.field(static=True, kw_only=True)
+    degree: int = eqx.field(static=True, default=3, kw_only=True)
 
     @property
     def control_count(self) -> int:

@@ -449,6 +449,8 @@ def _periodic_step(
 
     last = (growth[2], stages[:, 2] + offset[2])
     unit = (jnp.ones_like(stages[0, 0]), jnp.zeros_like(stages[0, 0]))
+    product: Array
+    before: Array
     (multiplier, total), (product, before) = jax.lax.scan(compose, unit, last, unroll=8)
     node_state = product * (total / (1 - multiplier)) + before
     updated = jnp.stack(

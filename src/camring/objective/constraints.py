@@ -90,8 +90,8 @@ def _at_point(
     constraints: Constraints, system: System, drop: Float[Array, ""], metrics: Metrics
 ) -> dict[str, Float[Array, ""]]:
     motor = system.motor
-    least = constraints.min_pressure
-    least = system.fluid.vapour_pressure if least is None else least
+    vapour, wanted = system.fluid.vapour_pressure, constraints.min_pressure
+    least = vapour if wanted is None else jnp.asarray(wanted)
     found = {
         "min_pressure": (least - metrics.min_pressure) / drop,
         "chamber_volume": -metrics.min_volume / motor.dead_volume,
@@ -118,4 +118,4 @@ def _at_point(
 
 def penalty(found: dict[str, Float[Array, "*batch"]], factor: float) -> Float[Array, "*batch"]:
     """`lambda * sum max(0, g)^2`."""
-    return factor * sum(jnp.maximum(g, 0) ** 2 for g in found.values())
+    return factor * jnp.sum(jnp.maximum(jnp.stack(list(found.values())), 0) ** 2, axis=0)

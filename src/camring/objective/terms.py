@@ -6,6 +6,7 @@ model.md section 8.
 
 from dataclasses import dataclass
 
+import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.metrics.summary import Metrics
@@ -66,4 +67,5 @@ def weighted_sum(
     terms: dict[str, Float[Array, "*batch"]], weights: Weights
 ) -> Float[Array, "*batch"]:
     """`J_phys` from raw terms."""
-    return sum(factor * terms[name] for name, factor in term_weights(weights).items())
+    weighted = [factor * terms[name] for name, factor in term_weights(weights).items()]
+    return jnp.sum(jnp.stack(weighted), axis=0)

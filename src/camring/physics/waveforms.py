@@ -36,7 +36,11 @@ def shaft_torque(
     return sum_over_pistons(cycle, lambda at: sample_angles(cycle, at).torque, angle)
 
 
-def sum_over_pistons(cycle: Cycle, waveform, angle: Array) -> Array:
+def sum_over_pistons(
+    cycle: Cycle,
+    waveform: Callable[[Float[Array, "*grid"]], Float[Array, "*grid"]],
+    angle: Q[Float[Array, "*grid"], "rad"],
+) -> Float[Array, "*grid"]:
     """A waveform of one piston added up over the pistons, equal ones counted once."""
     motor = cycle.motor
     phases = motor.distinct_phases
