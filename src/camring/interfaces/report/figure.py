@@ -50,7 +50,8 @@ def around(
 ) -> tuple[np.ndarray, np.ndarray]:
     """One period of values laid end to end so that they cover [low, high], angles ascending."""
     period = float(angle[-1] - angle[0])
-    first, last = int(np.floor((low - angle[0]) / period)), int(np.ceil((high - angle[0]) / period))
+    first = int(np.floor((low - angle[0]) / period + 1e-6))
+    last = int(np.ceil((high - angle[0]) / period - 1e-6))
     turns = range(first, max(last, first + 1))
     long_angle = np.concatenate([angle[:-1] + period * turn for turn in turns] + [[np.nan]])
     long_angle[-1] = angle[0] + period * (turns[-1] + 1)

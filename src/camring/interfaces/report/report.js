@@ -9,10 +9,10 @@
     for (const key in attributes) node.setAttribute(key, attributes[key]);
     return node;
   };
-  const shown = (value, digits) => {
-    if (!isFinite(value)) return "–";
-    const text = Math.abs(value) >= 1e-3 || value === 0
-      ? Number(value.toPrecision(digits || 4)).toString() : value.toExponential(2);
+  // As many decimals as the drawn curve can vouch for: a 5000th of the axis.
+  const shown = (value, axis) => {
+    const digits = axis.log ? 0 : Math.floor(-Math.log10(axis.span / 5000));
+    const text = axis.log ? value.toPrecision(3) : value.toFixed(Math.min(Math.max(digits, 0), 9));
     return text.replace("-", "−");
   };
 
@@ -30,7 +30,7 @@
     const [start, end, low, high, kind] = text.split(" ").map((v, k) => (k < 4 ? Number(v) : v));
     const log = kind === "log";
     return {
-      start, end,
+      start, end, log, span: high - low,
       value(paper) {
         const part = (paper - start) / (end - start);
         return log ? low * Math.pow(high / low, part) : low + part * (high - low);
@@ -74,20 +74,20 @@
       curves = curves || Array.from(svg.querySelectorAll("path.curve")).map((path) => (
         { label: path.dataset.label, colour: path.getAttribute("stroke"), pieces: curve(path) }));
       place = Math.min(Math.max(x, across.start), across.end);
-      const rows = [[svg.dataset.xLabel, across.value(place), svg.dataset.xUnit]];
+      const rows = [[svg.dataset.xLabel, shown(across.value(place), across), svg.dataset.xUnit]];
       spots.replaceChildren();
       for (const one of curves) {
         const y = heightAt(one.pieces, place);
         if (!isFinite(y)) continue;
         spots.append(made("circle", { class: "spot", cx: place, cy: y, r: 3.5, stroke: one.colour }));
-        rows.push([one.label, up.value(y), svg.dataset.yUnit]);
+        rows.push([one.label, shown(up.value(y), up), svg.dataset.yUnit]);
       }
       for (const [key, value] of [["x1", place], ["x2", place], ["y1", up.end], ["y2", up.start]])
         line.setAttribute(key, value);
       line.setAttribute("visibility", "visible");
       box.replaceChildren(...rows.map(([label, value, unit]) => {
         const row = document.createElement("div");
-        row.textContent = `${label}: ${shown(value)} ${unit}`;
+        row.textContent = `${label}: ${value} ${unit}`;
         return row;
       }));
       const scale = svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;

@@ -18,7 +18,7 @@ from camring.physics.resolution import Resolution
 from camring.physics.system import System
 from camring.physics.waveforms import waveforms
 
-__all__ = ["design_of", "facts_of"]
+__all__ = ["design_of", "facts_of", "results_of"]
 
 SAMPLES_PER_LOBE = 1200
 MOST_SAMPLES = 7200
@@ -49,19 +49,19 @@ def design_of(label: str, system: System, resolution: Resolution | None = None) 
 
 
 def _angles(motor: Motor) -> np.ndarray:
-    """One period of the cam with both ends; the last angle lies a hair inside.
-
-    Inside, because at the end itself the next period's jerk already holds.
-    """
+    """One period of the cam with both ends."""
     pitches = motor.lobes // motor.cam.repeats
     count = min(SAMPLES_PER_LOBE * pitches, MOST_SAMPLES)
-    angle = np.linspace(0.0, motor.cam.period, count + 1)
-    angle[-1] *= 1 - 1e-9
-    return angle
+    return np.linspace(0.0, motor.cam.period, count + 1)
+
+
+def _inside(angle: np.ndarray) -> Array:
+    """The angles at which to read: the last a hair early, where this period's jerk still holds."""
+    return jnp.asarray(np.append(angle[:-1], angle[-1] * (1 - 1e-9)))
 
 
 def _profile(motor: Motor, angle: np.ndarray) -> Profile:
-    radius = motor.cam.pitch_radius(jnp.asarray(angle))
+    radius = motor.cam.pitch_radius(_inside(angle))
     return Profile(
         angle,
         np.asarray(radius.value),
@@ -83,13 +83,24 @@ def _torque_by_order(cycle: Cycle, highest_order: int) -> Array:
     return order_spectrum(cycle, highest_order).torque
 
 
+def results_of(system: System, resolution: Resolution) -> list[dict[str, float]]:
+    """The results alone, at every operating point; nothing is sampled for pictures."""
+    found = []
+    for point in system.operating_points:
+        cycle = _simulate(system.motor, system.fluid, point, resolution)
+        metrics = _summarise(cycle, resolution.harmonics)
+        found.append({name: float(value) for name, value in vars(metrics).items()})
+    return found
+
+
 def _result(
     system: System, point: OperatingPoint, angle: np.ndarray, resolution: Resolution
 ) -> Result:
     motor, plate = system.motor, system.motor.valve_plate
     cycle = _simulate(motor, system.fluid, point, resolution)
     metrics = _summarise(cycle, resolution.harmonics)
-    waves = _waveforms(cycle, jnp.asarray(angle))
+    inside = _inside(angle)
+    waves = _waveforms(cycle, inside)
     torque = np.asarray(_torque_by_order(cycle, resolution.harmonics))
     return Result(
         duty=_duty(point),
@@ -97,8 +108,8 @@ def _result(
         waves=Waves(
             angle=angle,
             **{name: np.asarray(getattr(waves, name)) for name in _WAVES},
-            supply_opening=np.asarray(plate.opening(plate.supply, jnp.asarray(angle))),
-            return_opening=np.asarray(plate.opening(plate.return_, jnp.asarray(angle))),
+            supply_opening=np.asarray(plate.opening(plate.supply, inside)),
+            return_opening=np.asarray(plate.opening(plate.return_, inside)),
         ),
         orders=motor.cam.repeats * np.arange(1, len(torque) + 1),
         torque_amplitudes=torque,

@@ -165,8 +165,13 @@ def leave_one_out_table(search: Search) -> str:
         )
         for name, error in search.leave_one_out.items()
     ]
-    head = [("Surrogate", ""), ("Leave-one-out error of J (rms)", "n"), ("", "")]
-    return _table(head, rows, "Surrogates compared on designs left out", "narrow")
+    head = [("Surrogate", ""), ("Leave-one-out error", "n"), ("", "")]
+    return _table(
+        head,
+        rows,
+        "Surrogates of the objective judged on designs left out (0 perfect, 1 as good as the mean)",
+        "narrow",
+    )
 
 
 def error_table(data: ReportData) -> str:

@@ -117,7 +117,7 @@ def _words(designs: Sequence[Design], duty: int) -> str:
     metrics = dict(designs[-1].results[duty].metrics)
     order = sorted(LOSSES, key=lambda name: -metrics[name])
     residual = abs(balance_residual(metrics))
-    closes = "to rounding" if residual < 1e-12 else f"to {1e6 * residual:.1g} millionths"
+    closes = "to within a millionth" if residual < 1e-6 else f"to {1e6 * residual:.1g} millionths"
     text = (
         f"Most of what is lost is {QUANTITIES[order[0]].label.lower()}, then "
         f"{QUANTITIES[order[1]].label.lower()}; input, output and losses balance {closes}."

@@ -23,8 +23,8 @@ _NAMES = {
     "min_pressure": "Lowest pressure (cavitation)",
     "max_pressure": "Highest pressure",
     "min_contact_force": "Lowest contact force (lift-off)",
-    "min_volume": "Chamber volume positive",
-    "lift": "Lift range",
+    "chamber_volume": "Smallest chamber volume",
+    "lift": "Lift",
 }
 
 
@@ -45,12 +45,12 @@ def margin_figure(constraints: Sequence[Constraint], designs: Sequence[Design]) 
             tick_count=8,
         ),
         len(constraints),
-        14.0 * len(designs) + 14.0,
+        max(14.0 * len(designs) + 14.0, 34.0),
         right=190.0,
     )
     rows = []
     for row, constraint in enumerate(constraints):
-        y = bars.y(row) + 8
+        y = bars.y(row) + (bars.pitch - 14 * len(designs)) / 2
         middle = y + 7 * len(designs) - 2
         rows.append(bars.label(middle, plain_name(constraint.name), constraint.limit))
         pairs = zip(constraint.margins, constraint.values, looks(designs), strict=True)
@@ -102,6 +102,9 @@ def plain_name(name: str) -> str:
         return _NAMES[name]
     if name in QUANTITIES:
         return QUANTITIES[name].label
+    for end, end_name in (("_low", "lower end"), ("_high", "upper end")):
+        if name.endswith(end):
+            return f"{plain_name(name.removesuffix(end))}, {end_name}"
     sense, _, rest = name.partition("_")
     heads = {"min": "Lowest", "max": "Highest"}
     if sense in heads:

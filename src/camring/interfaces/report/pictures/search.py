@@ -185,7 +185,8 @@ class _Designs:
                     if known
                     else [name.replace("_", " "), significant(value)]
                 )
-            rows += [[name, significant(value)] for name, value in trial.variables.items()]
+            if front:  # the others would only swell the file
+                rows += [[name, significant(value)] for name, value in trial.variables.items()]
             pieces.append(
                 element(
                     "circle",

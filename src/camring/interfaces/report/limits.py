@@ -1,0 +1,100 @@
+"""The goal's limits against what designs do, in words and margins."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from camring.interfaces.report.data import Constraint, Design
+from camring.interfaces.report.quantities import QUANTITIES, Quantity, significant
+from camring.metrics.summary import Metrics
+from camring.numerics.quantity import real
+from camring.objective.constraints import (
+    BANDS,
+    LOWER_LIMITS,
+    UPPER_LIMITS,
+    Constraints,
+    violations,
+)
+from camring.physics.system import System
+
+__all__ = ["constraints_of"]
+
+
+@dataclass(frozen=True)
+class _Limit:
+    """One limit: the result it bounds, from which side, and where."""
+
+    result: str
+    upper: bool
+    bound: float
+
+
+def _limits(constraints: Constraints, system: System) -> dict[str, _Limit]:
+    """Every constraint that is set, by the name `violations` gives it."""
+    least = constraints.min_pressure
+    if least is None:
+        least = float(system.fluid.vapour_pressure)
+    found = {
+        "min_pressure": _Limit("min_pressure", False, least),
+        "chamber_volume": _Limit("min_volume", False, 0.0),
+    }
+    if constraints.min_contact_force is not None:
+        force = float(constraints.min_contact_force)
+        found["min_contact_force"] = _Limit("min_contact_force", False, force)
+    for names, upper in ((UPPER_LIMITS, True), (LOWER_LIMITS, False)):
+        for name, result in names.items():
+            bound = getattr(constraints, name)
+            if bound is not None:
+                found[name] = _Limit(result, upper, float(bound))
+    for name, (lowest, highest) in BANDS.items():
+        band = getattr(constraints, name)
+        if band is not None:
+            found[f"{name}_low"] = _Limit(lowest, False, float(band[0]))
+            found[f"{name}_high"] = _Limit(highest, True, float(band[1]))
+    return found
+
+
+def constraints_of(
+    constraints: Constraints, systems: Sequence[System], designs: Sequence[Design]
+) -> tuple[Constraint, ...]:
+    """Each limit with value and margin of every design, the worst over the operating points.
+
+    Parameters
+    ----------
+    systems
+        One for each design, in the same order.
+    """
+    margins = [
+        {
+            name: -float(violation)
+            for name, violation in violations(constraints, system, _metrics(design)).items()
+        }
+        for system, design in zip(systems, designs, strict=True)
+    ]
+    rows = []
+    for name, limit in _limits(constraints, systems[-1]).items():
+        quantity = QUANTITIES.get(limit.result) or Quantity(limit.result, "", "", 1.0)
+        pick = max if limit.upper else min
+        worst = [pick(r.metrics[limit.result] for r in design.results) for design in designs]
+        sense = "at most" if limit.upper else "at least"
+        rows.append(
+            Constraint(
+                name,
+                f"{sense} {quantity.value(limit.bound):.4g} {quantity.unit}".rstrip(),
+                tuple(_written(quantity, value) for value in worst),
+                tuple(found[name] for found in margins),
+                limit.bound,
+            )
+        )
+    return tuple(rows)
+
+
+def _written(quantity: Quantity, value: float) -> str:
+    return f"{significant(quantity.value(value), 4)} {quantity.unit}".rstrip()
+
+
+def _metrics(design: Design) -> tuple[Metrics, ...]:
+    """The results as the objective room knows them."""
+    return tuple(
+        Metrics(**{name: real(value) for name, value in result.metrics.items()})
+        for result in design.results
+    )

@@ -1,0 +1,94 @@
+"""The search's record as the report tells it."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from camring.interfaces.record import Record
+from camring.interfaces.report.coordinates import Coordinate
+from camring.interfaces.report.data import Search, Trial
+
+__all__ = ["leave_one_out", "phase_name", "search_of"]
+
+_PHASES = {
+    "given": "initial design",
+    "initial": "initial design",
+    "theory": "initial design",
+    "sobol": "initial design",
+    "global": "Bayesian search",
+    "local": "Bayesian search",
+    "bayesian": "Bayesian search",
+    "refine": "refinement",
+    "refinement": "refinement",
+    "nelder": "refinement",
+    "simplex": "refinement",
+}
+
+
+def phase_name(phase: str) -> str:
+    """A phase in plain words; one that is not known here keeps its own name."""
+    first = phase.replace("-", " ").replace("_", " ").split(" ")[0].lower()
+    return _PHASES.get(first, phase)
+
+
+def search_of(
+    records: Sequence[Record],
+    weights: Sequence[float],
+    coordinates: Sequence[Coordinate],
+    memory: Mapping[str, Any],
+    *,
+    stopped: str = "",
+    given: int | None = None,
+    best: int | None = None,
+    notes: Sequence[str] = (),
+) -> Search:
+    """Every trial with its weighted mean results, and how well the surrogates foretold."""
+    errors, used = leave_one_out(memory)
+    return Search(
+        trials=tuple(_trial(record, weights, coordinates) for record in records),
+        stopped=stopped.rstrip("."),
+        leave_one_out=errors,
+        surrogate_used=used,
+        notes=tuple(notes),
+        given=given,
+        best=best,
+    )
+
+
+def _trial(record: Record, weights: Sequence[float], coordinates: Sequence[Coordinate]) -> Trial:
+    names = ("torque_ripple", "efficiency", "max_contact_stress")
+    results = {}
+    for name in names:
+        values = [group.get(name, float("nan")) for group in record.outcome.results]
+        if len(values) == len(weights) and np.isfinite(values).all():
+            results[name] = float(np.average(values, weights=weights))
+    shown = zip(coordinates, record.point, strict=False)
+    return Trial(
+        number=record.trial,
+        phase=phase_name(record.phase),
+        objective=record.outcome.objective,
+        feasible=record.feasible,
+        failed=record.failed,
+        variables={f"{c.name}, {c.unit}".rstrip(", "): c.at(float(u)) for c, u in shown},
+        results=results,
+    )
+
+
+def leave_one_out(memory: Any) -> tuple[dict[str, float], str]:
+    """Errors by surrogate and the one in use, wherever the search's memory keeps them."""
+    if not isinstance(memory, Mapping):
+        return {}, ""
+    found = memory.get("leave_one_out")
+    if isinstance(found, Mapping):
+        errors = {
+            str(name): float(value[0] if isinstance(value, list) else value)
+            for name, value in found.items()
+            if value is not None
+        }
+        return errors, str(memory.get("mean", ""))
+    for inner in memory.values():
+        errors, used = leave_one_out(inner)
+        if errors:
+            return errors, used
+    return {}, ""
