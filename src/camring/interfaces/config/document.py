@@ -1,6 +1,7 @@
 """From a path to a TOML document: everything that can be wrong with a file as a file."""
 
 import os
+import re
 import stat
 import tomllib
 from difflib import get_close_matches
@@ -9,7 +10,12 @@ from typing import Any
 
 from camring.interfaces.errors import InputError
 
-LARGEST_FILE = 1_000_000  # bytes; a motor with 720 control points has 30,000
+LARGEST_FILE = 200_000  # bytes; a motor with 720 control points has 40,000
+
+# A key of twenty parts, a.b.c...; time and memory of the parser grow with their square.
+_LONG_KEY = re.compile(
+    r"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){20}""", re.ASCII
+)
 
 
 def read_text(path: Path) -> str:
@@ -67,6 +73,10 @@ def parse(text: str, shown: str) -> dict[str, Any]:
     InputError
         With the line of the fault in the syntax.
     """
+    found = _LONG_KEY.search(text)
+    if found is not None:
+        line = text[: found.start()].count("\n") + 1
+        raise InputError(shown, f"has a key of more than twenty parts in line {line}", "shorten it")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

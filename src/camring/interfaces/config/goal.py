@@ -18,12 +18,9 @@ WEIGHTS = (
 
 def build_goal(tables: FileTables) -> Goal:
     """Weights, constraints and number of harmonics of a file."""
-    limits = tables.constraints.model_dump()
-    if limits["min_pressure"] is None:
-        limits["min_pressure"] = tables.fluid.vapour_pressure  # type: ignore[attr-defined]
     weights = {name: getattr(tables.objective, name) for name in WEIGHTS}
     return Goal(
         weights=Weights(**weights),
-        constraints=Constraints(**limits),
+        constraints=Constraints(**tables.constraints.model_dump()),
         harmonics=tables.objective.harmonics,
     )

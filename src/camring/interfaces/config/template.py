@@ -1,0 +1,153 @@
+"""The motor file that `camring new` writes: a small wheel motor, every table explained."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from camring.geometry.profiles import LAWS, control_values, zero_ripple_cams
+
+PISTONS, LOBES, CONTROL_COUNT = 8, 6, 16
+BASE_RADIUS, STROKE = 0.085, 0.0118  # m
+PROFILES = (*LAWS, "zero-ripple")
+
+_SAID = {
+    "sine": "A sine cam: the smoothest acceleration, but its torque ripples.",
+    "constant-acceleration": (
+        "A cam of constant acceleration, two parabolas a flank: the least peak\n"
+        "# acceleration, endless jerk (rounded off here by the spline)."
+    ),
+    "trapezoid": "A modified trapezoid of acceleration: as steep as two parabolas, without jumps.",
+    "zero-ripple": (
+        "A spline cam whose geometric torque ripple is zero: its rising slope is a box of a\n"
+        "# quarter of a lobe convolved with a kernel, so that the slopes of the pistons add up\n"
+        "# to a constant."
+    ),
+}
+
+_TEXT = """\
+# A radial-piston motor: {pistons} pistons in a turning block inside a ring of {lobes} lobes.
+#
+# A number with a unit is text, "30 mm"; a bare number is SI. Pressures are absolute.
+# `camring check` tells the facts of this motor, `camring simulate` runs it,
+# `camring optimise` searches its design space for a better one.
+
+[motor]
+name = "{name}"
+pistons = {pistons}
+lobes = {lobes}
+bore = "30 mm"
+piston_mass = "0.24 kg"                       # with its roller
+viscous_damping = "8.5 N*s/m"                 # of one piston
+dead_volume = "6 cm^3"                        # of a chamber at its smallest
+leakage_coefficient = "1.6e-13 m^3/(s*Pa)"    # of a chamber into the case
+
+# {said}
+# Control values of the spline r(angle), one lobe, equally spaced from the inner dead
+# centre; r is the path of the roller's centre.
+[motor.cam]
+control_radii = [
+{control_radii}
+]
+degree = 3                                    # 4 and 5 have smoother jerk
+elastic_modulus = "206 GPa"
+poisson_ratio = 0.3
+
+[motor.roller]
+radius = "12 mm"
+length = "28 mm"                              # of line contact
+elastic_modulus = "206 GPa"
+poisson_ratio = 0.3
+
+# One supply and one return window in each lobe pitch of {pitch} deg, centred at a
+# quarter and at three quarters of it.
+[motor.valve_plate]
+port_area = "60 mm^2"                         # fully open
+discharge_coefficient = 0.65
+supply_width = "28.4 deg"
+return_width = "28.4 deg"
+shift = "0 deg"                               # turns all windows against the cam
+ramp = 0.35                                   # share of a window over which it opens and closes
+
+[fluid]
+density = "870 kg/m^3"
+bulk_modulus = "1.4 GPa"
+vapour_pressure = "3 kPa"
+
+# As many as the motor has duties; their weights make one objective of them.
+[[operating_points]]
+speed = "300 rpm"
+supply_pressure = "250 bar"
+return_pressure = "10 bar"
+case_pressure = "2 bar"
+weight = 0.6
+
+[[operating_points]]
+speed = "60 rpm"
+supply_pressure = "350 bar"
+return_pressure = "10 bar"
+case_pressure = "2 bar"
+weight = 0.4
+
+# What is to become small, with its weight. These are the defaults; leave out what fits.
+[objective]
+torque_ripple = 10
+pressure_ripple = 0.02
+efficiency = 1
+spectrum = 1
+jerk = 0.02
+
+# What must hold. A limit that is not given is none; see also stroke, lift, max_velocity,
+# max_acceleration, max_jerk, min_damping_ratio and min_mean_torque.
+[constraints]
+min_pressure = "3 kPa"                        # no cavitation
+max_pressure = "420 bar"
+max_contact_stress = "1.9 GPa"
+min_contact_force = "0 N"                     # rollers stay on the ring
+max_pressure_angle = "30 deg"
+min_undercut_factor = 0.25
+displacement = ["396.36 cm^3", "404.36 cm^3"]
+
+# What may change: any number above by its path, between two bounds, or by a share:
+# "motor.dead_volume" = {{ relative = ["-10 %", "10 %"] }}
+[design_space]
+"motor.valve_plate.shift" = ["-1 deg", "1 deg"]
+"motor.valve_plate.supply_width" = ["27 deg", "30 deg"]
+"motor.valve_plate.return_width" = ["27 deg", "30 deg"]
+"motor.valve_plate.ramp" = [0.2, 0.6]
+
+# The cam, by harmonics of the lobe up to `modes`; harmonic k changes a control radius by
+# at most amplitude/k^2 (a share is of the range of the control radii).
+[design_space.cam]
+modes = 8
+amplitude = "50 %"
+mirror = true                                 # stays symmetric about its dead centres
+
+[search]
+budget = 300                                  # model evaluations
+seed = 0
+"""
+
+
+def template(profile: str) -> str:
+    """The text of a new motor file with one of `PROFILES`."""
+    radii = BASE_RADIUS + STROKE * lift_control_values(profile)
+    quoted = [f'"{1e3 * radius:.4f} mm"' for radius in radii]
+    rows = [", ".join(quoted[start : start + 4]) for start in range(0, len(quoted), 4)]
+    return _TEXT.format(
+        pistons=PISTONS,
+        lobes=LOBES,
+        pitch=360 // LOBES,
+        name=f"Wheel motor, 0.4 L/rev, {profile} cam",
+        said=_SAID[profile],
+        control_radii=",\n".join(f"    {row}" for row in rows) + ",",
+    )
+
+
+def lift_control_values(profile: str) -> np.ndarray:
+    """Control values of one lobe of the template's motor, for a stroke of 1 from 0."""
+    if profile in LAWS:
+        law: Callable[[np.ndarray], np.ndarray] = LAWS[profile]
+        return control_values(law, CONTROL_COUNT)
+    cams = zero_ripple_cams(PISTONS, LOBES, CONTROL_COUNT)
+    gentlest = min(cams, key=lambda cam: np.max(np.abs(np.diff(np.pad(cam.steps, 1)))))
+    return gentlest.control_values(CONTROL_COUNT)
