@@ -246,7 +246,17 @@ def test_numbers_are_written_for_people(value, digits, text):
         ("displacement", 4e-4, 4.2e-4, "+5.0 %", 0),
         ("min_contact_force", -100.0, 400.0, "+0.5 kN", 1),
         ("min_pressure", np.nan, 1.0, "–", 0),
+        ("pressure_overshoot", 2e5, 0.0, "−2 bar", 1),
+        ("pressure_overshoot", 0.0, 0.0, "none", 0),
     ],
 )
 def test_changes_are_told_with_their_direction(name, before, after, text, better):
     assert change(QUANTITIES[name], before, after) == (text, better)
+
+
+@given(st.sampled_from(sorted(QUANTITIES)), st.floats(), st.floats())
+def test_any_two_numbers_have_a_change(name, before, after):
+    text, better = change(QUANTITIES[name], before, after)
+    assert text
+    assert better in (-1, 0, 1)
+    assert significant(before)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from camring.interfaces.report.data import ReportData
-    from camring.interfaces.report.gather import gather, gather_comparison, gather_single
+    from camring.interfaces.report.gathering import gather, gather_comparison, gather_single
     from camring.interfaces.report.page import render
     from camring.interfaces.report.write import write_page, write_report
 
@@ -26,9 +26,9 @@ __all__ = [
 
 _HOMES = {
     "ReportData": "data",
-    "gather": "gather",
-    "gather_comparison": "gather",
-    "gather_single": "gather",
+    "gather": "gathering",
+    "gather_comparison": "gathering",
+    "gather_single": "gathering",
     "render": "page",
     "write_page": "write",
     "write_report": "write",

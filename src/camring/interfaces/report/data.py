@@ -25,6 +25,7 @@ __all__ = [
     "Trial",
     "Variable",
     "Verdict",
+    "View",
     "Waves",
 ]
 
@@ -143,12 +144,25 @@ class Check:
 
 
 @dataclass(frozen=True)
+class View:
+    """A design as one solver sees it; results are weighted means over the operating points."""
+
+    design: str
+    eye: str
+    objective: float
+    torque_ripple: float
+    efficiency: float
+    margin: float  # the tightest
+
+
+@dataclass(frozen=True)
 class Verdict:
     """Whether the claims hold when they are looked at twice."""
 
     validated: bool
     sentence: str
     checks: tuple[Check, ...] = ()
+    views: tuple[View, ...] = ()
 
 
 @dataclass(frozen=True)

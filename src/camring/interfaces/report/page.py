@@ -123,6 +123,8 @@ def _validation(data: ReportData) -> str:
     parts = []
     if data.verdict is not None and data.verdict.checks:
         parts.append(tables.check_table(data.verdict))
+    if data.verdict is not None and data.verdict.views:
+        parts.append(tables.view_table(data.verdict))
     parts.append(tables.error_table(data))
     return "".join(parts)
 
@@ -157,7 +159,7 @@ _SECTIONS: tuple[tuple[str, str, Callable[[ReportData], str]], ...] = (
     ("contact", "Roller contact", _contact),
     ("search", "Search", _search),
     ("sensitivity", "Sensitivity", _sensitivity),
-    ("validation", "Numerical quality", _validation),
+    ("validation", "Checks", _validation),
     ("provenance", "Provenance", _provenance),
 )
 

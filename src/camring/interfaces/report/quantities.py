@@ -136,7 +136,7 @@ def change(quantity: Quantity, before: float, after: float) -> tuple[str, int]:
     if not (isfinite(before) and isfinite(after)):
         return "–", 0
     if quantity.relative:
-        if before == 0 or before * after < 0:
+        if before == 0 or after == 0 or before * after < 0:
             moved = (after - before) * quantity.factor
             small = abs(moved) < 1e-9
             text = "none" if small else f"{moved:+.3g} {quantity.unit}".rstrip()

@@ -12,7 +12,6 @@ from camring.interfaces.report.data import Sensitivity
 from camring.interfaces.report.quantities import significant
 from camring.interfaces.report.simulation import results_of
 from camring.objective.design_space import DesignSpace
-from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
 __all__ = ["RESULTS", "sensitivities_of"]
@@ -22,7 +21,7 @@ RESULTS = ("torque_ripple", "efficiency", "max_contact_stress")
 
 
 def sensitivities_of(
-    motor_file: MotorFile, point: Sequence[float] | np.ndarray, resolution: Resolution | None = None
+    motor_file: MotorFile, point: Sequence[float] | np.ndarray
 ) -> tuple[Sensitivity, ...]:
     """Weighted means of a few results with every coordinate moved down and up.
 
@@ -38,7 +37,7 @@ def sensitivities_of(
 
     def results(unit_point: np.ndarray) -> dict[str, float]:
         moved: System = apply(space, system, jnp.asarray(unit_point))
-        return _mean_results(moved, resolution or Resolution())
+        return _mean_results(moved, motor_file.goal.harmonics)
 
     centre = np.asarray(point, dtype=float)
     middle = results(centre)
@@ -58,10 +57,10 @@ def sensitivities_of(
     return tuple(rows)
 
 
-def _mean_results(system: System, resolution: Resolution) -> dict[str, float]:
+def _mean_results(system: System, harmonics: int) -> dict[str, float]:
     """The weighted mean over the operating points; for limits the worst would mislead here."""
     weights = np.array([float(point.weight) for point in system.operating_points])
-    each = results_of(system, resolution)
+    each = results_of(system, harmonics)
     return {
         name: float(np.average([metrics[name] for metrics in each], weights=weights))
         for name in RESULTS

@@ -8,10 +8,10 @@ import numpy as np
 from jaxtyping import Array
 
 from camring.geometry.contour import pitch_curvature, pressure_angle, undercut_factor
+from camring.interfaces.compiled import cycles, summarise_compiled
 from camring.interfaces.report.data import Design, Duty, Facts, Profile, Result, Waves
 from camring.metrics.spectrum import order_spectrum
-from camring.metrics.summary import summarise
-from camring.physics.cycle import Cycle, simulate
+from camring.physics.cycle import Cycle
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.resolution import Resolution
@@ -22,6 +22,7 @@ __all__ = ["design_of", "facts_of", "results_of"]
 
 SAMPLES_PER_LOBE = 1200
 MOST_SAMPLES = 7200
+HARMONICS = 600
 
 
 def facts_of(motor: Motor) -> Facts:
@@ -37,14 +38,26 @@ def facts_of(motor: Motor) -> Facts:
     )
 
 
-def design_of(label: str, system: System, resolution: Resolution | None = None) -> Design:
+def design_of(
+    label: str,
+    system: System,
+    *,
+    harmonics: int = HARMONICS,
+    resolution: Resolution | None = None,
+) -> Design:
     """One motor simulated at each of its operating points.
 
     Designs that differ in numbers only share one compilation.
+
+    Parameters
+    ----------
+    harmonics
+        Highest order that a ripple counts; the goal's.
     """
-    resolution = resolution or Resolution()
     angle = _angles(system.motor)
-    results = tuple(_result(system, point, angle, resolution) for point in system.operating_points)
+    results = tuple(
+        _result(system.motor, cycle, angle, harmonics) for cycle in cycles(system, resolution)
+    )
     return Design(label, facts_of(system.motor), _profile(system.motor, angle), results)
 
 
@@ -72,9 +85,6 @@ def _profile(motor: Motor, angle: np.ndarray) -> Profile:
     )
 
 
-# Apart, so that the dear one is the same program as everywhere else and comes from the cache.
-_simulate = eqx.filter_jit(simulate)
-_summarise = eqx.filter_jit(summarise)
 _waveforms = eqx.filter_jit(waveforms)
 
 
@@ -83,28 +93,23 @@ def _torque_by_order(cycle: Cycle, highest_order: int) -> Array:
     return order_spectrum(cycle, highest_order).torque
 
 
-def results_of(system: System, resolution: Resolution) -> list[dict[str, float]]:
+def results_of(system: System, harmonics: int = HARMONICS) -> list[dict[str, float]]:
     """The results alone, at every operating point; nothing is sampled for pictures."""
-    found = []
-    for point in system.operating_points:
-        cycle = _simulate(system.motor, system.fluid, point, resolution)
-        metrics = _summarise(cycle, resolution.harmonics)
-        found.append({name: float(value) for name, value in vars(metrics).items()})
-    return found
+    return [_numbers(cycle, harmonics) for cycle in cycles(system)]
 
 
-def _result(
-    system: System, point: OperatingPoint, angle: np.ndarray, resolution: Resolution
-) -> Result:
-    motor, plate = system.motor, system.motor.valve_plate
-    cycle = _simulate(motor, system.fluid, point, resolution)
-    metrics = _summarise(cycle, resolution.harmonics)
-    inside = _inside(angle)
+def _numbers(cycle: Cycle, harmonics: int) -> dict[str, float]:
+    metrics = summarise_compiled(cycle, harmonics)
+    return {name: float(value) for name, value in vars(metrics).items()}
+
+
+def _result(motor: Motor, cycle: Cycle, angle: np.ndarray, harmonics: int) -> Result:
+    plate, inside = motor.valve_plate, _inside(angle)
     waves = _waveforms(cycle, inside)
-    torque = np.asarray(_torque_by_order(cycle, resolution.harmonics))
+    torque = np.asarray(_torque_by_order(cycle, harmonics))
     return Result(
-        duty=_duty(point),
-        metrics={name: float(value) for name, value in vars(metrics).items()},
+        duty=_duty(cycle.point),
+        metrics=_numbers(cycle, harmonics),
         waves=Waves(
             angle=angle,
             **{name: np.asarray(getattr(waves, name)) for name in _WAVES},

@@ -26,6 +26,7 @@ __all__ = [
     "pairs_table",
     "result_table",
     "variable_table",
+    "view_table",
 ]
 
 
@@ -174,25 +175,45 @@ def leave_one_out_table(search: Search) -> str:
     )
 
 
+def view_table(verdict: Verdict) -> str:
+    """The same designs through other eyes."""
+    rows = [
+        _row(
+            f"{view.design.capitalize()}, {view.eye}",
+            (significant(view.objective, 6), "n"),
+            (significant(100 * view.torque_ripple, 5), "n"),
+            (significant(100 * view.efficiency, 6), "n"),
+            (significant(100 * view.margin, 4), "n"),
+        )
+        for view in verdict.views
+    ]
+    head = [
+        ("Design", ""),
+        ("Objective J", "n"),
+        ("Torque ripple, %", "n"),
+        ("Efficiency, %", "n"),
+        ("Tightest margin, %", "n"),
+    ]
+    return _table(head, rows, "The same designs through other eyes, weighted over the duties")
+
+
 def error_table(data: ReportData) -> str:
     """Numerical quality of every simulation behind the report."""
+    results = [(design, result) for design in data.designs for result in design.results]
+    # An estimate that nobody made gets no column of dashes.
+    estimated = any(np.isfinite(result.numerical_error) for _, result in results)
     rows = []
-    for design in data.designs:
-        for result in design.results:
-            rows.append(
-                _row(
-                    f"{design.label}, {result.duty.name}",
-                    (_small(result.numerical_error), "n"),
-                    (_small(result.periodicity_residual), "n"),
-                    (_small(balance_residual(dict(result.metrics))), "n"),
-                )
-            )
-    head = [
-        ("Simulation", ""),
-        ("Estimated error", "n"),
-        ("Periodicity residual", "n"),
-        ("Power balance residual", "n"),
-    ]
+    for design, result in results:
+        cells = [
+            (_small(result.periodicity_residual), "n"),
+            (_small(balance_residual(dict(result.metrics))), "n"),
+        ]
+        if estimated:
+            cells.insert(0, (_small(result.numerical_error), "n"))
+        rows.append(_row(f"{design.label.capitalize()}, {result.duty.name}", *cells))
+    head = [("Simulation", ""), ("Periodicity residual", "n"), ("Power balance residual", "n")]
+    if estimated:
+        head.insert(1, ("Estimated error", "n"))
     return _table(head, rows, "Numerical quality, relative")
 
 

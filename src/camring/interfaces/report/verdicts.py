@@ -1,46 +1,100 @@
 """What `validation.json` says, as the report's verdict."""
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from camring.interfaces.report.data import Check, Verdict
+import numpy as np
+
+from camring.interfaces.report.data import Check, Verdict, View
+from camring.interfaces.report.pictures.margins import plain_name
 
 __all__ = ["read_verdict", "verdict_of"]
 
+_EYES = {
+    "search": "as the search saw it",
+    "finer": "at finer resolution",
+    "independent": "by SciPy's stiff solver",
+}
 
-def read_verdict(path: Path) -> Verdict | None:
-    """The verdict of a validation file; None when there is none or it cannot be read."""
+
+def read_verdict(path: Path, weights: Sequence[float]) -> Verdict | None:
+    """The verdict of a validation file; None when there is none or it cannot be read.
+
+    Parameters
+    ----------
+    weights
+        Of the operating points.
+    """
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return verdict_of(document) if isinstance(document, Mapping) else None
+    return verdict_of(document, weights) if isinstance(document, Mapping) else None
 
 
-def verdict_of(document: Mapping[str, Any]) -> Verdict:
+def verdict_of(document: Mapping[str, Any], weights: Sequence[float] = ()) -> Verdict:
     """Validated only when the document says so in so many words."""
     validated = document.get("validated") is True
     checks = tuple(
         Check(
-            str(check.get("name", "")),
+            _in_words(str(check.get("name", ""))),
             check.get("passed") is True,
             str(check.get("detail", "")),
         )
         for check in document.get("checks", ())
         if isinstance(check, Mapping)
     )
-    return Verdict(validated, _sentence(document, validated, checks), checks)
+    views = tuple(
+        _view(design, _EYES.get(eye, eye), seen, weights)
+        for design, eyes in document.get("views", {}).items()
+        for eye, seen in eyes.items()
+        if isinstance(seen, Mapping) and not seen.get("failure")
+    )
+    return Verdict(validated, _sentence(document, validated, checks), checks, views)
+
+
+def _in_words(name: str) -> str:
+    """A check's name, its first word replaced when it is the key of a constraint."""
+    first, space, rest = name.partition(" ")
+    return f"{plain_name(first)}{space}{rest}" if "_" in first else name[:1].upper() + name[1:]
 
 
 def _sentence(document: Mapping[str, Any], validated: bool, checks: Sequence[Check]) -> str:
-    given = document.get("sentence") or document.get("reason")
+    given = document.get("sentence")
     if isinstance(given, str) and given:
-        return given
+        # The head says the word itself.
+        text = re.sub(r"^(not )?validated: *", "", given, flags=re.IGNORECASE)
+        return text[:1].upper() + text[1:]
     if validated:
         return "Every gain and every limit holds at finer resolution and with another solver."
     failed = [check for check in checks if not check.passed]
     if failed:
         return "; ".join(f"{check.name}: {check.detail}" for check in failed) + "."
     return "The checks were not completed."
+
+
+def _view(design: str, eye: str, seen: Mapping[str, Any], weights: Sequence[float]) -> View:
+    results = seen.get("results", ())
+
+    def mean(name: str) -> float:
+        values = [_number(result.get(name)) for result in results]
+        if not values or len(values) != len(weights):
+            return float("nan")
+        return float(np.average(values, weights=weights))
+
+    limits = [_number(value) for value in seen.get("constraints", {}).values()]
+    return View(
+        design,
+        eye,
+        _number(seen.get("objective")),
+        mean("torque_ripple"),
+        mean("efficiency"),
+        -max(limits) if limits else float("nan"),
+    )
+
+
+def _number(value: Any) -> float:
+    return float(value) if isinstance(value, int | float) else float("nan")

@@ -19,7 +19,7 @@ def write_report(folder: str | Path) -> Path:
     InputError
         When the folder holds no study, or cannot be written.
     """
-    from camring.interfaces.report.gather import gather
+    from camring.interfaces.report.gathering import gather
     from camring.interfaces.study_folder import REPORT_NAME
 
     return write_page(Path(folder) / REPORT_NAME, gather(folder))

@@ -42,9 +42,11 @@ def gather(folder: str | Path) -> ReportData:
     best = _best_motor(study, given, best_record)
     files = [given] if best is None else [given, best]
     designs = tuple(
-        design_of(label, file.system) for label, file in zip(("given", "best"), files, strict=False)
+        design_of(label, file.system, harmonics=file.goal.harmonics)
+        for label, file in zip(("given", "best"), files, strict=False)
     )
     system = given.system
+    weights = [float(point.weight) for point in system.operating_points]
     space = given.design_space
     points: list[np.ndarray] = [] if space is None else [space.locate(system)]
     if best_record is not None and best is not None:
@@ -53,12 +55,12 @@ def gather(folder: str | Path) -> ReportData:
         title=_title(given),
         subtitle=_subtitle(designs[-1]),
         designs=designs,
-        verdict=_verdict(study, best),
+        verdict=_verdict(study, best, weights),
         constraints=constraints_of(given.goal.constraints, [f.system for f in files], designs),
         variables=variables_of(given, points) if len(points) == len(designs) else (),
         search=search_of(
             records,
-            [float(point.weight) for point in system.operating_points],
+            weights,
             coordinates_of(given),
             memory,
             stopped=facts.get("stopped", ""),
@@ -77,7 +79,7 @@ def gather(folder: str | Path) -> ReportData:
 
 def gather_single(motor_file: MotorFile) -> ReportData:
     """One motor as it is."""
-    design = design_of("motor", motor_file.system)
+    design = design_of("motor", motor_file.system, harmonics=motor_file.goal.harmonics)
     return ReportData(
         title=_title(motor_file),
         subtitle=_subtitle(design),
@@ -89,7 +91,10 @@ def gather_single(motor_file: MotorFile) -> ReportData:
 
 def gather_comparison(motor_files: Sequence[MotorFile]) -> ReportData:
     """Several motors side by side, named by their files; limits are those of the last."""
-    designs = tuple(design_of(file.path.stem, file.system) for file in motor_files)
+    designs = tuple(
+        design_of(file.path.stem, file.system, harmonics=file.goal.harmonics)
+        for file in motor_files
+    )
     last = motor_files[-1]
     return ReportData(
         title=" · ".join(design.label for design in designs),
@@ -113,8 +118,8 @@ def _best_motor(
     return parse_motor_file(given.with_design(best_record.point.tolist()), study.best_path)
 
 
-def _verdict(study: StudyFolder, best: MotorFile | None) -> Verdict:
-    found = read_verdict(study.validation_path)
+def _verdict(study: StudyFolder, best: MotorFile | None, weights: Sequence[float]) -> Verdict:
+    found = read_verdict(study.validation_path, weights)
     if found is not None:
         return found
     if best is None:

@@ -1,0 +1,194 @@
+"""A report is gathered from a real study folder, and can be made again and again."""
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from camring.interfaces.commands.report import report
+from camring.interfaces.config import read_motor_file
+from camring.interfaces.errors import InputError
+from camring.interfaces.evaluator import MotorEvaluator
+from camring.interfaces.record import Record, failed
+from camring.interfaces.report import (
+    gather,
+    gather_comparison,
+    gather_single,
+    render,
+    write_page,
+    write_report,
+)
+from camring.interfaces.report.verdicts import verdict_of
+from camring.interfaces.study_folder import StudyFolder
+from camring.interfaces.validation import Check, Validation
+from camring.objective.theory import theory_designs
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "wheel_motor.toml"
+MEMORY = {
+    "bayesian": {
+        "learned": {
+            "leave_one_out": {"plain": [0.31, 0.0], "rho = 1": [0.2, 1.0]},
+            "mean": "rho = 1",
+        }
+    }
+}
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory) -> Path:
+    """A study of three evaluations: the given motor, one from theory, one that failed."""
+    folder = tmp_path_factory.mktemp("study") / "wheel"
+    motor_file = read_motor_file(EXAMPLE)
+    space, system = motor_file.design_space, motor_file.system
+    points = [space.locate(system), theory_designs(system, space, motor_file.goal.constraints)[0]]
+    evaluate = MotorEvaluator(motor_file.text)
+    opened = StudyFolder.create(
+        folder, EXAMPLE.read_bytes(), {"seed": "7", "budget": "3", "stopped": "budget spent."}
+    )
+    try:
+        for trial, point in enumerate(points):
+            record = Record(trial, "initial", point, evaluate(point), 0.0, 0.01)
+            opened.store.append(record, {})
+        record = Record(2, "local", np.full(space.dimension, 0.1), failed("no convergence"))
+        opened.store.append(record, MEMORY)
+    finally:
+        opened.close()
+    return folder
+
+
+@pytest.fixture(scope="module")
+def data(study):
+    return gather(study)
+
+
+def test_before_and_after_are_the_given_and_the_best_motor(data):
+    assert [design.label for design in data.designs] == ["given", "best"]
+    given, best = (design.results[0].metrics for design in data.designs)
+    assert given["torque_ripple"] == pytest.approx(0.08293857, rel=1e-4)
+    assert best["torque_ripple"] < 0.3 * given["torque_ripple"]
+    assert data.is_study
+    assert "8 pistons on 6 lobes" in data.subtitle
+
+
+def test_margins_are_those_of_the_study(data, study):
+    opened = StudyFolder.open(study, write=False)
+    outcome = opened.store.records()[0].outcome
+    opened.close()
+    assert {c.name for c in data.constraints} == set(outcome.constraints)
+    for constraint in data.constraints:
+        assert constraint.margins[0] == pytest.approx(
+            -outcome.constraints[constraint.name], rel=1e-5, abs=1e-7
+        )
+        assert constraint.limit.startswith(("at most", "at least"))
+
+
+def test_variables_are_in_the_units_of_the_file(data):
+    by_name = {variable.name: variable for variable in data.variables}
+    shift = by_name["motor.valve_plate.shift"]
+    width = by_name["motor.valve_plate.supply_width"]
+    assert (width.unit, width.low, width.high) == ("deg", pytest.approx(27), pytest.approx(30))
+    assert width.values[0] == pytest.approx(28.4)
+    assert shift.values[0] == pytest.approx(0.0, abs=1e-9)
+    assert by_name["cam cos 2"].unit == "mm"
+
+
+def test_the_search_is_told_trial_by_trial(data):
+    search = data.search
+    assert [trial.failed for trial in search.trials] == [False, False, True]
+    assert (search.given, search.best) == (0, 1)
+    assert search.surrogate_used == "rho = 1"
+    assert search.leave_one_out == {"plain": 0.31, "rho = 1": 0.2}
+    assert search.stopped == "budget spent"
+
+
+def test_sensitivities_surround_the_best_design(data):
+    names = {s.variable for s in data.sensitivities}
+    assert names == {variable.name for variable in data.variables}
+    centre = {s.centre for s in data.sensitivities if s.result == "efficiency"}
+    assert len(centre) == 1
+    moved = [abs(s.high - s.low) for s in data.sensitivities if s.result == "torque_ripple"]
+    assert max(moved) > 1e-5
+
+
+def test_a_study_without_validation_is_not_called_validated(data):
+    assert data.verdict is not None
+    assert not data.verdict.validated
+
+
+def test_the_command_writes_the_page_and_says_where(study, tmp_path):
+    folder = tmp_path / "copy"
+    shutil.copytree(study, folder)
+    report(folder)
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert page.startswith("<!DOCTYPE html>")
+    assert "Wheel motor" in page
+    assert len(page) < 2_000_000
+    before = sorted(each.name for each in folder.iterdir() if "wal" not in each.name)
+    write_report(folder)
+    after = sorted(each.name for each in folder.iterdir() if "wal" not in each.name)
+    assert before == after
+
+
+def test_a_folder_without_a_study_is_refused_in_a_sentence(tmp_path):
+    with pytest.raises(InputError, match="holds no study"):
+        write_report(tmp_path)
+
+
+def test_a_page_replaces_pages_only(tmp_path):
+    data = gather_single(read_motor_file(EXAMPLE))
+    place = tmp_path / "report.html"
+    assert write_page(place, data) == place
+    write_page(place, data)
+    motor = tmp_path / "motor.toml"
+    motor.write_text("[motor]\n")
+    with pytest.raises(InputError, match="no report"):
+        write_page(motor, data)
+    assert motor.read_text() == "[motor]\n"
+    with pytest.raises(InputError):
+        write_page(tmp_path / "absent" / "report.html", data)
+
+
+def test_motors_are_compared_by_the_names_of_their_files():
+    file = read_motor_file(EXAMPLE)
+    page = render(gather_comparison([file, file, file]))
+    assert "comparison" in page
+    assert re.search(r"<th[^>]*>Wheel_motor</th>", page)
+
+
+def test_the_verdict_of_a_validation_is_told_in_words():
+    results = [{"torque_ripple": 0.08, "efficiency": 0.96}, {"torque_ripple": 0.06}]
+    seen = {"objective": 0.1, "constraints": {"stroke_low": -0.03, "x": -0.2}, "results": results}
+    eyes = {"search": seen, "finer": {**seen, "failure": "no convergence"}}
+    check = Check("max_contact_stress at finer resolution", True, "margin 0.02")
+    document = json.loads(Validation(3, True, "Validated: all holds.", [check], {}).to_json())
+    verdict = verdict_of({**document, "views": {"given": eyes}}, weights=[1, 3])
+    assert verdict.validated
+    assert verdict.sentence == "All holds."
+    assert verdict.checks[0].name == "Highest contact stress at finer resolution"
+    (view,) = verdict.views
+    assert view.torque_ripple == pytest.approx(0.065)
+    assert np.isnan(view.efficiency)
+    assert view.margin == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize(
+    ("document", "validated", "sentence"),
+    [
+        ({"validated": True, "sentence": "All holds."}, True, "All holds."),
+        ({"validated": True}, True, "Every gain"),
+        ({"validated": "yes"}, False, "not completed"),
+        ({}, False, "not completed"),
+        (
+            {"checks": [{"name": "Finer", "passed": False, "detail": "gain gone"}]},
+            False,
+            "Finer: gain gone",
+        ),
+    ],
+)
+def test_only_a_plain_yes_is_a_validation(document, validated, sentence):
+    verdict = verdict_of(json.loads(json.dumps(document)))
+    assert verdict.validated is validated
+    assert sentence in verdict.sentence
