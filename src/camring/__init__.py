@@ -13,16 +13,19 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from camring.interfaces.config import MotorFile, read_motor_file
     from camring.interfaces.errors import InputError
-    from camring.interfaces.study import Study, open_study, optimise, resume
+    from camring.interfaces.optimisation import optimise, resume
+    from camring.interfaces.study import Study, open_study
     from camring.metrics.summary import Metrics, summarise
     from camring.objective.constraints import Constraints
     from camring.objective.design_space import DesignSpace
-    from camring.objective.objective import Goal, Weights, evaluate
-    from camring.physics.cycle import Cycle, simulate, waveforms
+    from camring.objective.objective import Goal, evaluate
+    from camring.objective.terms import Weights
+    from camring.physics.cycle import Cycle, simulate
     from camring.physics.motor import Motor
     from camring.physics.operating_point import OperatingPoint
     from camring.physics.resolution import Resolution
     from camring.physics.system import System
+    from camring.physics.waveforms import waveforms
 
 __version__ = "0.1.0"
 
@@ -39,15 +42,15 @@ _HOMES = {
     "Resolution": "camring.physics.resolution",
     "Study": "camring.interfaces.study",
     "System": "camring.physics.system",
-    "Weights": "camring.objective.objective",
+    "Weights": "camring.objective.terms",
     "evaluate": "camring.objective.objective",
     "open_study": "camring.interfaces.study",
-    "optimise": "camring.interfaces.study",
+    "optimise": "camring.interfaces.optimisation",
     "read_motor_file": "camring.interfaces.config",
-    "resume": "camring.interfaces.study",
+    "resume": "camring.interfaces.optimisation",
     "simulate": "camring.physics.cycle",
     "summarise": "camring.metrics.summary",
-    "waveforms": "camring.physics.cycle",
+    "waveforms": "camring.physics.waveforms",
 }
 
 __all__ = [

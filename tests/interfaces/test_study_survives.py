@@ -35,7 +35,7 @@ def wait_for_evaluations(folder, count, process, patience=60):
 @pytest.fixture(scope="module")
 def uninterrupted(tmp_path_factory):
     folder = tmp_path_factory.mktemp("uninterrupted") / "study"
-    assert fake_study.run(folder, BUDGET) == f"the budget of {BUDGET} evaluations is spent"
+    assert fake_study.run(folder, BUDGET) == f"The budget of {BUDGET} evaluations is spent."
     return fake_study.sequence(folder)
 
 

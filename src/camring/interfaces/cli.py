@@ -17,6 +17,7 @@ import typer
 from typer.core import TyperGroup
 
 import camring
+from camring.interfaces.compilation_cache import keep_compiled_programs
 from camring.interfaces.errors import CamringError
 from camring.interfaces.interrupt import EXIT_CODE as INTERRUPTED
 
@@ -29,6 +30,7 @@ class _Commands(TyperGroup):
     """Runs one command; whatever goes wrong in it ends as one sentence on stderr."""
 
     def invoke(self, ctx: Any) -> Any:
+        keep_compiled_programs()
         try:
             return super().invoke(ctx)
         except CamringError as error:

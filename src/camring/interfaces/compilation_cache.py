@@ -25,7 +25,8 @@ MARKER_SUFFIX = ".running"
 def keep_compiled_programs() -> Path | None:
     """Tells JAX where to keep them; the folder, or None when there is none to use.
 
-    Call it before the first compilation.
+    Call it before JAX is imported: it speaks through the environment, which
+    spawned workers inherit and which costs `--help` nothing.
     """
     folder = private_folder()
     if folder is None:
@@ -33,13 +34,13 @@ def keep_compiled_programs() -> Path | None:
     _discard_cut_off(folder)
     _mark(folder)
 
-    import jax
-
-    jax.config.update("jax_compilation_cache_dir", str(folder))
-    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
-    jax.config.update("jax_persistent_cache_min_entry_size_bytes", -1)
-    # An entry that cannot be read or written costs a compilation, not a word.
-    jax.config.update("jax_raise_persistent_cache_errors", False)
+    os.environ.update(
+        JAX_COMPILATION_CACHE_DIR=str(folder),
+        JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS="0",
+        JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES="-1",
+        # An entry that cannot be read or written costs a compilation, not a word.
+        JAX_RAISE_PERSISTENT_CACHE_ERRORS="false",
+    )
     warnings.filterwarnings("ignore", message=".*persistent compilation cache.*")
     return folder
 

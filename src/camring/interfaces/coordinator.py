@@ -5,24 +5,23 @@ each turn starts from what the database holds. Hence a study that was killed goe
 on exactly as if nothing had happened.
 """
 
+import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from jaxtyping import Float
 
 from camring.interfaces.executors import InThisProcess
 from camring.interfaces.interrupt import Interruption
-from camring.interfaces.record import Outcome, Record, failed
+from camring.interfaces.record import SAFETY, Outcome, Record, failed
 from camring.interfaces.store import Store
 from camring.search.problem import AbstractStrategy, Evaluation, Stop
 
-# Half a finding: the search keeps this far inside each limit, so that a design on
-# a limit still holds when it is looked at with a finer or another eye.
-SAFETY = 1e-4
+HOPELESS = 20  # evaluations; if the first so many all fail, something else is wrong
 
 
 class Watcher(Protocol):
@@ -72,7 +71,10 @@ def search(
     records = store.records()
     history = [as_seen_by_search(record, task.constraints) for record in records]
     memory = store.memory()
+    surrogates = leave_one_out(memory)
     while len(history) < task.budget:
+        if len(history) == HOPELESS and all(evaluation.failed for evaluation in history):
+            return f"The first {HOPELESS} evaluations all failed: {history[-1].failure}."
         proposal = interruption.run(thinking, task.strategy.propose, history, memory, task.seed)
         if isinstance(proposal, Stop):
             return proposal.reason
@@ -88,12 +90,14 @@ def search(
             started=started,
             seconds=time.perf_counter() - clock,
         )
-        store.append(record, proposal.memory)
+        surrogates = leave_one_out(proposal.memory) or surrogates
+        facts = {"leave_one_out": json.dumps(surrogates)} if surrogates else {}
+        store.append(record, proposal.memory, facts)
         history.append(as_seen_by_search(record, task.constraints))
         # Read back, so that a memory which text cannot hold shows at once and not after a kill.
         memory = store.memory()
         watch(record)
-    return f"the budget of {task.budget} evaluations is spent"
+    return f"The budget of {task.budget} evaluations is spent."
 
 
 def evaluate_or_fail(
@@ -121,3 +125,24 @@ def as_seen_by_search(record: Record, constraints: Sequence[str]) -> Evaluation:
         failure=outcome.failure,
         phase=record.phase,
     )
+
+
+def leave_one_out(memory: Any) -> dict[str, Any] | None:
+    """How well each kind of surrogate predicts, wherever a strategy's memory says so.
+
+    Returns
+    -------
+    `errors` (root mean square over the spread of the objective) and `rho` by name
+    of the surrogate, and which is `used`; None while there is no surrogate.
+    """
+    if not isinstance(memory, Mapping):
+        return None
+    found = memory.get("leave_one_out")
+    if isinstance(found, Mapping):
+        return {
+            "errors": {name: error for name, (error, _) in found.items()},
+            "rho": {name: rho for name, (_, rho) in found.items()},
+            "used": memory.get("mean", ""),
+        }
+    inner = (leave_one_out(value) for value in memory.values())
+    return next((each for each in inner if each), None)

@@ -9,6 +9,10 @@ from jaxtyping import Float
 
 Numbers = Mapping[str, float]
 
+# The search keeps this far inside each limit, so that a design on a limit still
+# holds when it is looked at with a finer or another eye.
+SAFETY = 1e-4
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -81,10 +85,23 @@ class Record:
     @property
     def feasible(self) -> bool:
         """Whether the design works and keeps every limit."""
-        return not self.failed and all(value <= 0 for value in self.outcome.constraints.values())
+        return self.within(0.0)
+
+    def within(self, margin: float) -> bool:
+        """Whether the design works and keeps every limit by a margin."""
+        return not self.failed and all(
+            value <= -margin for value in self.outcome.constraints.values()
+        )
 
 
 def best_of(records: Sequence[Record]) -> Record | None:
-    """The feasible record of lowest objective, the earlier of equals; None if none is feasible."""
+    """The feasible record of lowest objective, the earlier of equals; None if none is feasible.
+
+    One that keeps every limit by `SAFETY` comes before any that does not.
+    """
     feasible = [record for record in records if record.feasible]
-    return min(feasible, key=lambda record: record.outcome.objective, default=None)
+    return min(
+        feasible,
+        key=lambda record: (not record.within(SAFETY), record.outcome.objective),
+        default=None,
+    )

@@ -51,8 +51,10 @@ class Store:
         with database.errors_in_words(folder):
             return cls(folder, database.open_existing(folder, write=write))
 
-    def append(self, record: Record, memory: Mapping[str, Any]) -> None:
-        """Keeps one evaluation and the memory that goes with it; both or neither."""
+    def append(
+        self, record: Record, memory: Mapping[str, Any], facts: Mapping[str, str] | None = None
+    ) -> None:
+        """Keeps one evaluation, the memory that goes with it and new facts; all or nothing."""
         trial, outcome = record.trial, record.outcome
         row = (
             trial,
@@ -87,6 +89,9 @@ class Store:
                 )
             connection.execute(
                 "INSERT OR REPLACE INTO memory VALUES (0, ?, ?)", (trial, json.dumps(memory))
+            )
+            connection.executemany(
+                "INSERT OR REPLACE INTO study VALUES (?, ?)", (facts or {}).items()
             )
 
     def records(self) -> list[Record]:

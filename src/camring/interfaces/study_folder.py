@@ -43,8 +43,7 @@ class StudyFolder:
         facts
             What the study is about: seed, budget and the like.
         """
-        if path.exists() or path.is_symlink():
-            raise _occupied(path)
+        require_vacant(path)
         unfinished: Path | None = None
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -124,6 +123,12 @@ class StudyFolder:
                 "undo the change, or start a new study from the changed file with "
                 "`camring optimise`",
             )
+
+
+def require_vacant(path: Path) -> None:
+    """Raises `InputError` when anything at all is at the place of a new study."""
+    if path.exists() or path.is_symlink():
+        raise _occupied(path)
 
 
 def write_safely(path: Path, content: bytes) -> None:

@@ -24,9 +24,6 @@ def optimise(
             help="Begin also from cams of zero geometric ripple, where the space holds them.",
         ),
     ] = True,
-    workers: Annotated[
-        int, typer.Option(min=0, help="Processes that evaluate; 0 evaluates in this one.")
-    ] = 0,
     json: Annotated[
         bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
     ] = False,
@@ -37,11 +34,9 @@ def optimise(
     and study.sqlite, which holds every evaluation. Ctrl-C stops at any time and
     loses nothing; `camring resume FOLDER` goes on.
     """
-    from camring.interfaces.finish import show
+    from camring.interfaces.finished import show
+    from camring.interfaces.optimisation import optimise
     from camring.interfaces.progress import SearchProgress
-    from camring.interfaces.study import optimise
 
-    finished = optimise(
-        motor, out, budget=budget, seed=seed, theory=theory, workers=workers, watch=SearchProgress
-    )
+    finished = optimise(motor, out, budget=budget, seed=seed, theory=theory, watch=SearchProgress)
     raise typer.Exit(show(finished, as_json=json))

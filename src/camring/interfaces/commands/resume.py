@@ -21,8 +21,8 @@ def resume(
     The designs that follow are the same, bit for bit, as those of a study that
     was not interrupted. A study that has ended is checked and reported again.
     """
-    from camring.interfaces.finish import show
+    from camring.interfaces.finished import show
+    from camring.interfaces.optimisation import resume
     from camring.interfaces.progress import SearchProgress
-    from camring.interfaces.study import resume
 
     raise typer.Exit(show(resume(folder, budget=budget, watch=SearchProgress), as_json=json))

@@ -1,0 +1,133 @@
+"""Designs of one motor file, judged: from a point of the unit box to an outcome."""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import equinox as eqx
+import jax
+import numpy as np
+from jaxtyping import Array, Float
+
+from camring.interfaces.compiled import assess
+from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
+from camring.interfaces.record import Outcome
+from camring.numerics.verdict import Verdict
+from camring.objective.baseline import approximate
+from camring.objective.design_space import DesignSpace, leaf
+from camring.objective.objective import Assessment, Goal
+from camring.physics.resolution import Resolution
+from camring.physics.system import System
+
+Point = Float[np.ndarray, " dimension"]
+CHUNK = 64  # one compiled program for any number of points
+
+
+@dataclass(frozen=True)
+class MotorEvaluator:
+    """Judges designs; travels to other processes as the text of the motor file."""
+
+    text: str
+
+    def __call__(self, point: Point) -> Outcome:
+        """What the simulation says about one design."""
+        model = _model(self.text)
+        system = model.system_at(point)
+        assessment = assess(system, model.goal)
+        return outcome_of(
+            assessment,
+            approximation=float(model.approximate(point[None])[0]),
+            design=_values(model.space, system),
+        )
+
+    def approximate(
+        self, points: Float[np.ndarray, "points dimension"]
+    ) -> Float[np.ndarray, " points"]:
+        """The linear model's guess of the objective at many points."""
+        return _model(self.text).approximate(points)
+
+
+class _Model:
+    """A motor file made ready for many evaluations."""
+
+    def __init__(self, motor_file: MotorFile) -> None:
+        if motor_file.design_space is None:
+            raise missing_design_space(motor_file.path)
+        self.system: System = motor_file.system
+        self.goal: Goal = motor_file.goal
+        self.space: DesignSpace = motor_file.design_space
+
+    def system_at(self, point: Point) -> System:
+        return _apply(self.space, self.system, point)
+
+    def approximate(
+        self, points: Float[np.ndarray, "points dimension"]
+    ) -> Float[np.ndarray, " points"]:
+        found = np.empty(len(points))
+        for start in range(0, len(points), CHUNK):
+            rows = points[start : start + CHUNK]
+            padded = np.concatenate([rows, np.broadcast_to(rows[:1], (CHUNK, rows.shape[1]))])
+            values = _approximate(self.space, self.system, self.goal, padded[:CHUNK])
+            found[start : start + CHUNK] = np.asarray(values)[: len(rows)]
+        return found
+
+
+def _values(space: DesignSpace, design: System) -> dict[str, float | list[float]]:
+    """What the variables are in one design, SI, by path in the motor file."""
+    paths = {
+        key: at[0]
+        for each in space.variables
+        for key, at in zip(each.keys, each.leaves, strict=True)
+    }
+    if space.cam is not None:
+        paths[space.cam_key] = space.cam_key
+    return {key: np.asarray(leaf(path)(design)).tolist() for key, path in paths.items()}
+
+
+@lru_cache(maxsize=4)
+def _model(text: str) -> _Model:
+    return _Model(parse_motor_file(text))
+
+
+@eqx.filter_jit
+def _apply(space: DesignSpace, system: System, point: Point) -> System:
+    return space.apply(system, point)
+
+
+@eqx.filter_jit
+def _approximate(
+    space: DesignSpace, system: System, goal: Goal, points: Float[np.ndarray, "points dimension"]
+) -> Float[Array, " points"]:
+    return jax.vmap(lambda point: approximate(space.apply(system, point), goal))(points)
+
+
+def outcome_of(
+    assessment: Assessment, approximation: float = math.nan, design: dict | None = None
+) -> Outcome:
+    """The assessment as plain numbers; a faulty one has no objective but says why."""
+    found: Assessment = jax.device_get(assessment)
+    sentences = [Verdict(code).explain() for code in found.faults]
+    failure = "; ".join(dict.fromkeys(sentence for sentence in sentences if sentence)) or None
+    if failure is None and not math.isfinite(found.objective):
+        failure = "the objective is not a finite number"
+    return Outcome(
+        objective=math.nan if failure else float(found.objective),
+        physical_objective=math.nan if failure else float(found.physical_objective),
+        approximation=approximation,
+        constraints={name: float(value) for name, value in found.constraints.items()},
+        terms=[
+            {name: float(values[place]) for name, values in found.terms.items()}
+            for place in range(len(found.metrics))
+        ],
+        results=[
+            {name: float(value) for name, value in vars(metrics).items()}
+            for metrics in found.metrics
+        ],
+        design=design or {},
+        failure=failure,
+    )
+
+
+def assess_file(motor_file: MotorFile, resolution: Resolution | None = None) -> Outcome:
+    """The motor of a file as it stands."""
+    return outcome_of(assess(motor_file.system, motor_file.goal, resolution))

@@ -1,0 +1,183 @@
+"""From a motor file to a better, checked motor: the study from its first to its last step."""
+
+import json
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
+from contextlib import AbstractContextManager
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+import camring
+from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
+from camring.interfaces.config.document import decode, read_text
+from camring.interfaces.coordinator import Search, search
+from camring.interfaces.errors import InputError
+from camring.interfaces.evaluator import MotorEvaluator
+from camring.interfaces.executors import InThisProcess
+from camring.interfaces.finished import Finished
+from camring.interfaces.finishing import finish
+from camring.interfaces.interrupt import Interrupted, Interruption
+from camring.interfaces.record import Record
+from camring.interfaces.strategy import first_points, strategy_for
+from camring.interfaces.study_folder import StudyFolder, require_vacant, unwritable
+
+
+class Watcher(Protocol):
+    """Who follows a study: called with each evaluation, told of each step."""
+
+    def __call__(self, record: Record) -> None: ...
+
+    def say(self, sentence: str) -> None: ...
+
+
+class Silent:
+    """Follows a study without a word."""
+
+    def __init__(self, kept: Sequence[Record], budget: int) -> None:
+        pass
+
+    def __enter__(self) -> "Silent":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def __call__(self, record: Record) -> None:
+        pass
+
+    def say(self, sentence: str) -> None:
+        pass
+
+
+Watch = Callable[[Sequence[Record], int], AbstractContextManager[Watcher]]
+
+
+def optimise(
+    motor: str | Path,
+    out: str | Path,
+    *,
+    budget: int | None = None,
+    seed: int | None = None,
+    theory: bool = True,
+    executor: Executor | None = None,
+    watch: Watch = Silent,
+) -> Finished:
+    """Search for a better motor, validate it and report, all in a new folder.
+
+    Parameters
+    ----------
+    motor
+        Path of a motor file with a design space.
+    out
+        The folder to make.
+    budget, seed
+        Model evaluations in all, and where chance comes from; else as in the file.
+    theory
+        Whether the search begins also with what theory recommends.
+    executor
+        Where evaluations run; else in this process.
+
+    Raises
+    ------
+    InputError
+        When the file or the folder cannot be used; nothing is then written.
+    Interrupted
+        When Ctrl-C came; `resume` goes on.
+    """
+    path, folder = Path(motor), Path(out)
+    require_vacant(folder)
+    read_text(path)  # a regular file of a sensible size
+    given = _bytes_of(path)
+    motor_file = parse_motor_file(decode(given, str(path)), path)
+    if motor_file.design_space is None:
+        raise missing_design_space(path)
+    budget = motor_file.search.budget if budget is None else budget
+    seed = motor_file.search.seed if seed is None else seed
+    with Interruption() as interruption:
+        try:
+            first = interruption.run(InThisProcess(), _first_points, motor_file, theory)
+        except Interrupted:
+            raise Interrupted("Stopped before the study began; nothing was written.") from None
+        facts = {
+            "seed": str(seed),
+            "budget": str(budget),
+            "theory": str(theory).lower(),
+            "first_points": json.dumps(first.tolist()),
+            "given_name": path.name,
+            "camring": camring.__version__,
+            "began": datetime.now(UTC).isoformat(timespec="seconds"),
+        }
+        study = StudyFolder.create(folder, given, facts)
+        return _go_on(study, interruption, executor, watch)
+
+
+def resume(
+    folder: str | Path,
+    *,
+    budget: int | None = None,
+    executor: Executor | None = None,
+    watch: Watch = Silent,
+) -> Finished:
+    """Go on with a study as if it had never stopped; see `optimise`.
+
+    Parameters
+    ----------
+    budget
+        Another number of model evaluations in all; noted in the study.
+    """
+    study = StudyFolder.open(Path(folder), write=True)
+    if budget is not None:
+        study.store.note(budget=str(budget))
+    with Interruption() as interruption:
+        return _go_on(study, interruption, executor, watch)
+
+
+def _go_on(
+    study: StudyFolder, interruption: Interruption, executor: Executor | None, watch: Watch
+) -> Finished:
+    here = InThisProcess()
+    try:
+        facts, kept = study.store.facts(), study.store.records()
+        budget = int(facts["budget"])
+        motor_file = parse_motor_file(read_text(study.given_path), study.given_path)
+        evaluator = MotorEvaluator(motor_file.text)
+        first = [np.array(point) for point in json.loads(facts["first_points"])]
+        task = Search(
+            evaluate=evaluator,
+            constraints=motor_file.goal.constraints.names(),
+            strategy=strategy_for(motor_file, evaluator, first, budget),
+            budget=budget,
+            seed=int(facts["seed"]),
+        )
+        with watch(kept, budget) as watcher:
+            reason = search(task, study.store, executor or here, interruption, watcher)
+            study.store.note(stopped=reason)
+            watcher.say(reason)
+            records, facts = study.store.records(), study.store.facts()
+            return interruption.run(here, finish, study, motor_file, records, facts, watcher.say)
+    except Interrupted:
+        count = len(study.store.records())
+        raise Interrupted(
+            f"Stopped with {count} evaluation{'s' * (count != 1)} kept; "
+            f"`camring resume {study.path}` goes on."
+        ) from None
+    except OSError as error:
+        raise unwritable(study.path, error) from error
+    finally:
+        study.close()
+
+
+def _first_points(motor_file: MotorFile, theory: bool) -> np.ndarray:
+    return first_points(motor_file, theory=theory)
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(
+            str(path), f"cannot be read ({error.strerror})", "name a file that you may read"
+        ) from error

@@ -1,0 +1,57 @@
+"""Which strategy searches a motor's design space."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float
+
+from camring.interfaces.config import MotorFile, missing_design_space
+from camring.interfaces.evaluator import MotorEvaluator
+from camring.objective.theory import theory_designs
+from camring.search.bayesian import BayesianStrategy
+from camring.search.hybrid import Hybrid, Stage
+from camring.search.nelder_mead import NelderMead
+from camring.search.problem import AbstractStrategy
+
+MOST_THEORY_DESIGNS = 6
+REFINEMENT_SHARE = 0.2  # of the budget, for Nelder and Mead at the end
+
+
+def first_points(motor_file: MotorFile, *, theory: bool) -> Float[np.ndarray, "points dimension"]:
+    """The given motor, always, and what theory recommends."""
+    space = motor_file.design_space
+    if space is None:
+        raise missing_design_space(motor_file.path)
+    given = space.locate(motor_file.system)[None]
+    if not theory:
+        return given
+    recommended = theory_designs(
+        motor_file.system, space, motor_file.goal.constraints, MOST_THEORY_DESIGNS
+    )
+    return np.concatenate([given, recommended])
+
+
+def strategy_for(
+    motor_file: MotorFile,
+    evaluator: MotorEvaluator,
+    first: Sequence[Float[np.ndarray, " dimension"]],
+    budget: int,
+) -> AbstractStrategy:
+    """Bayesian search, then a simplex about the best."""
+    space = motor_file.design_space
+    assert space is not None
+    refinement = int(REFINEMENT_SHARE * budget)
+    return Hybrid(
+        (
+            Stage(
+                BayesianStrategy(
+                    dimension=space.dimension,
+                    constraint_count=len(motor_file.goal.constraints.names()),
+                    approximate=evaluator.approximate,
+                    given=tuple(first),
+                ),
+                budget - refinement,
+            ),
+            Stage(NelderMead(space.dimension), None),
+        )
+    )
