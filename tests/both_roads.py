@@ -4,42 +4,55 @@ from functools import cache
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 from motors import Case, Structure, awkward_case, sound_case, stacked
+from reference_files import reference_results
 
 from camring.metrics.independent import independent_results
 from camring.metrics.summary import summarise
 from camring.physics.cycle import simulate
 from camring.physics.resolution import Resolution
+from camring.physics.waveforms import waveforms
 
-RESULTS = (
-    "mean_torque torque_ripple torque_ripple_peak_to_peak pressure_ripple flow_ripple "
-    "displacement stroke ideal_torque supply_flow efficiency volumetric_efficiency "
-    "hydromechanical_efficiency input_power output_power throttling_loss leakage_loss "
-    "friction_loss compression_loss min_pressure max_pressure min_contact_force "
-    "max_contact_stress min_undercut_factor max_pressure_angle max_velocity max_acceleration "
-    "max_jerk min_volume natural_frequency damping_ratio jerk_objective spectral_pressure "
-    "spectral_torque"
-).split()
+RESULTS = tuple(reference_results("mid")[0])  # the names of model.md section 10
 
 
+BATCH = 8  # every run is a batch of this size, so that a structure is compiled once
+
+
+@eqx.filter_jit
 def _run(motor, fluid, point, resolution):
-    cycle = simulate(motor, fluid, point, resolution)
-    return cycle, summarise(cycle)
+    def one(motor, fluid, point):
+        cycle = simulate(motor, fluid, point, resolution)
+        return cycle, summarise(cycle)
 
-
-_single = eqx.filter_jit(_run)
-_batch = eqx.filter_jit(jax.vmap(_run, in_axes=(0, 0, 0, None)))
-
-
-def run(case: Case, resolution: Resolution | None = None):
-    """Cycle and metrics of one motor, compiled once for each structure."""
-    return _single(*case, resolution or Resolution())
+    return jax.vmap(one)(motor, fluid, point)
 
 
 def run_all(cases: list[Case], resolution: Resolution | None = None):
-    """Cycles and metrics of motors of one structure, as one batch."""
-    return _batch(*stacked(cases), resolution or Resolution())
+    """Cycles and metrics of motors of one structure, with a leading axis."""
+    found = []
+    for first in range(0, len(cases), BATCH):
+        some = cases[first : first + BATCH]
+        padded = some + [some[-1]] * (BATCH - len(some))
+        batch = _run(*stacked(padded), resolution or Resolution())
+        found.append(jax.tree.map(lambda leaf, count=len(some): leaf[:count], batch))  # noqa: B008
+    return jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
+
+
+def run(case: Case, resolution: Resolution | None = None):
+    """Cycle and metrics of one motor."""
+    return single(run_all([case], resolution), 0)
+
+
+def single(tree, index: int):
+    """One motor out of a batch."""
+    return jax.tree.map(lambda leaf: leaf[index], tree)
+
+
+waveforms_of = eqx.filter_jit(waveforms)
+"""Waveforms of one cycle at some angles, compiled once for each number of angles."""
 
 
 def records(metrics) -> list[dict[str, float]]:

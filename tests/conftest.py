@@ -1,6 +1,9 @@
 """Shared by all tests: helper modules beside this file, and one hypothesis profile."""
 
+import os
+import shutil
 import sys
+import tempfile
 from pathlib import Path
 
 from hypothesis import HealthCheck, settings
@@ -17,3 +20,20 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
 settings.load_profile("camring")
+
+
+COMPILED = "JAX_COMPILATION_CACHE_DIR"
+_own_folder: list[str] = []
+
+
+def pytest_configure(config):
+    """One folder of compiled programs for all worker processes of this run."""
+    if not hasattr(config, "workerinput") and COMPILED not in os.environ:
+        _own_folder.append(tempfile.mkdtemp(prefix="camring-tests-"))
+        os.environ[COMPILED] = _own_folder[0]
+
+
+def pytest_unconfigure(config):
+    for folder in _own_folder:
+        shutil.rmtree(folder, ignore_errors=True)
+        os.environ.pop(COMPILED, None)

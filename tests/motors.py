@@ -75,11 +75,9 @@ class Structure:
 
 STRUCTURES = (
     Structure("radial", 8, 6, 16),
-    Structure("radial", 10, 8, 12),
-    Structure("radial", 7, 5, 14, degree=4, reference="mean"),
-    Structure("ring", 9, 4, 10),
+    Structure("ring", 9, 4, 10, reference="mean"),
     Structure("radial", 5, 9, 12, degree=5),
-    Structure("planar", 6, 4, 12),
+    Structure("planar", 6, 4, 12, degree=4),
 )
 
 
@@ -89,14 +87,14 @@ def random_cam(rng, structure: Structure, inner: float, stroke: float) -> Abstra
         lobe = [
             smooth_radii(rng, count, inner, stroke * rng.uniform(0.97, 1.0)) for _ in range(lobes)
         ]
-        return RadialCam(np.concatenate(lobe), 1, degree)
+        return RadialCam(np.concatenate(lobe), repeats=1, degree=degree)
     radii = smooth_radii(rng, count, inner, stroke)
     if structure.kind == "radial":
-        return RadialCam(radii, lobes, degree)
+        return RadialCam(radii, repeats=lobes, degree=degree)
     step = 2 * pi / lobes / count
     turned = step * (np.arange(count) + rng.uniform(-0.1, 0.1, size=count))
     points = np.stack([radii * np.cos(turned), radii * np.sin(turned)], axis=-1)
-    return PlanarCam(points, lobes, degree)
+    return PlanarCam(points, repeats=lobes, degree=degree)
 
 
 def sound_case(seed: int, structure: Structure | None = None) -> Case:

@@ -40,7 +40,9 @@ def test_a_box_of_whole_piston_phases_under_any_kernel_has_no_geometric_ripple(
     rising = int(rng.integers(1, max(room * phases // count, 1) + 1))
     width = rising * count // phases
     kernel = rng.uniform(0, 1, size=int(rng.integers(1, room - width + 2))) + 0.01
-    cam = RadialCam(zero_ripple_control(phases, count, rising, kernel), lobes, degree)
+    cam = RadialCam(
+        zero_ripple_control(phases, count, rising, kernel), repeats=lobes, degree=degree
+    )
     total = geometric_sum(cam, pistons, np.linspace(0, 2 * pi / lobes, 397))
     np.testing.assert_allclose(total, total.mean(), rtol=1e-12)
     # Every piston's rise, spread evenly over the turn.
@@ -53,7 +55,7 @@ def test_geometric_ripple_is_what_the_lobe_harmonics_of_the_rising_slope_say(pis
     """`G` holds the lobe harmonics q, 2q, ... of max(s', 0), each times the piston count."""
     rng = np.random.default_rng(pistons)
     phases = pistons // gcd(pistons, lobes)
-    cam = RadialCam(0.2 + 0.004 * rng.normal(size=16), lobes, 3)
+    cam = RadialCam(0.2 + 0.004 * rng.normal(size=16), repeats=lobes, degree=3)
     grid = 4096 * phases
     phase = np.arange(grid) / grid
     rising = np.maximum(np.asarray(cam.pitch_radius(phase * 2 * pi / lobes).first), 0)
@@ -70,7 +72,7 @@ def test_a_sine_cam_ripples_as_the_rectified_sine_says(pistons, lobes, waves):
     """K = q for even q, 2q for odd; the two decimals are those of model.md."""
     count = 128
     control = 0.2 - 0.01 * np.cos(2 * pi * np.arange(count) / count)
-    cam = RadialCam(control, lobes, 5)
+    cam = RadialCam(control, repeats=lobes, degree=5)
     phases = pistons // gcd(pistons, lobes)
     assert waves == (phases if phases % 2 == 0 else 2 * phases)
     angle = 2 * pi / lobes * np.arange(40_000) / 40_000

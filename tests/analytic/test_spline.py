@@ -78,7 +78,7 @@ def test_a_control_value_acts_at_its_own_angle(degree):
 def test_only_the_highest_derivative_jumps_and_only_at_the_knots(degree):
     rng = np.random.default_rng(degree)
     count, period = 11, 2.0
-    cam = RadialCam(rng.normal(size=count), 1, degree)
+    cam = RadialCam(rng.normal(size=count), repeats=1, degree=degree)
     period = cam.period
     edges = np.append(knots(count, period, degree), knots(count, period, degree)[0] + period)
     np.testing.assert_allclose(cam.breakpoints(), edges[:-1])
@@ -104,7 +104,7 @@ def test_a_planar_cam_is_a_curve_and_its_radius_is_read_at_the_polar_angle(degre
     turned = step * (np.arange(count) + rng.uniform(-0.25, 0.25, count))
     radius = 0.2 * (1 + 0.1 / lobes * rng.uniform(-1, 1, count))
     points = np.stack([radius * np.cos(turned), radius * np.sin(turned)], axis=-1)
-    cam = PlanarCam(points, lobes, degree)
+    cam = PlanarCam(points, repeats=lobes, degree=degree)
     turns = 2 * pi / lobes * np.arange(lobes)[:, None]
     ring = ((points[:, 0] + 1j * points[:, 1]) * np.exp(1j * turns)).ravel()
     parameter = rng.uniform(0, 2 * pi, 60)
@@ -144,12 +144,14 @@ def test_lobes_are_alike_whether_written_once_or_all_round(kind):
     cam = random_cam(np.random.default_rng(3), structure, 0.15, 0.015)
     lobes, angle = structure.lobes, np.linspace(-1, 7, 200)
     if kind == "radial":
-        around = RadialCam(np.tile(cam.control_radii, lobes), 1, cam.degree)
+        around = RadialCam(np.tile(cam.control_radii, lobes), repeats=1, degree=cam.degree)
     else:
         turn = 2 * pi / lobes * np.arange(lobes)
         points = np.asarray(cam.control_points)
         rotation = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-        around = PlanarCam(np.einsum("jx,xyk->kjy", points, rotation).reshape(-1, 2), 1, cam.degree)
+        around = PlanarCam(
+            np.einsum("jx,xyk->kjy", points, rotation).reshape(-1, 2), repeats=1, degree=cam.degree
+        )
     for one, all_round in zip(cam.pitch_radius(angle), around.pitch_radius(angle), strict=True):
         scale = np.abs(np.asarray(one)).max()
         np.testing.assert_allclose(one, all_round, rtol=0, atol=1e-11 * scale)
@@ -158,7 +160,7 @@ def test_lobes_are_alike_whether_written_once_or_all_round(kind):
 @pytest.mark.parametrize("degree", DEGREES)
 def test_equally_turned_points_on_a_circle_make_a_nearly_round_planar_cam(degree):
     turned = 2 * pi * np.arange(24) / 24
-    cam = PlanarCam(np.stack([np.cos(turned), np.sin(turned)], axis=-1), 1, degree)
+    cam = PlanarCam(np.stack([np.cos(turned), np.sin(turned)], axis=-1), repeats=1, degree=degree)
     jet = cam.pitch_radius(np.linspace(0, 2 * pi, 300))
     assert np.ptp(jet.value) < 2e-5
     assert float(cam.least_turning()) == pytest.approx(1, abs=1e-3)

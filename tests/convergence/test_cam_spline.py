@@ -47,8 +47,10 @@ def test_each_derivative_of_a_radial_cam_costs_one_order(degree, derivative):
     errors = []
     for count in (32, 64, 128):
         samples = profile(2 * pi * np.arange(count) / count)[0]
-        cam = RadialCam(interpolating_control(samples, degree), 1, degree)
-        errors.append(np.abs(cam.pitch_radius(DENSE)[derivative] - profile(DENSE)[derivative]).max())
+        cam = RadialCam(interpolating_control(samples, degree), repeats=1, degree=degree)
+        errors.append(
+            np.abs(cam.pitch_radius(DENSE)[derivative] - profile(DENSE)[derivative]).max()
+        )
     expected = degree + 1 - derivative
     assert np.all(np.abs(rates(errors) - expected) < 0.35), rates(errors)
     assert abs(rates(errors)[-1] - expected) < 0.12, rates(errors)
@@ -63,8 +65,10 @@ def test_each_derivative_of_a_planar_cam_costs_one_order(derivative):
         turned = parameter + 0.3 * np.sin(parameter)
         curve = profile(turned)[0] * np.exp(1j * turned)
         control = interpolating_control(curve, 3)
-        cam = PlanarCam(np.stack([control.real, control.imag], axis=-1), 1, 3)
-        errors.append(np.abs(cam.pitch_radius(DENSE)[derivative] - profile(DENSE)[derivative]).max())
+        cam = PlanarCam(np.stack([control.real, control.imag], axis=-1), repeats=1, degree=3)
+        errors.append(
+            np.abs(cam.pitch_radius(DENSE)[derivative] - profile(DENSE)[derivative]).max()
+        )
     expected = 4 - derivative
     assert np.all(np.abs(rates(errors) - expected) < 0.3), rates(errors)
 

@@ -64,9 +64,7 @@ def test_turning_the_plate_turns_the_openings(lobes, width, ramp, shift, turn):
 
 @settings(max_examples=40)
 @given(lobes=lobes, width=shares, ramp=shares, centre=st.floats(-2, 2))
-def test_a_window_is_straight_between_its_breakpoints_and_bends_at_them(
-    lobes, width, ramp, centre
-):
+def test_a_window_is_straight_between_its_breakpoints_and_bends_at_them(lobes, width, ramp, centre):
     plate = plate_of(lobes, width, ramp, centre=centre)
     edges = np.sort(np.asarray(plate.breakpoints()))
     edges = np.append(edges, edges[0] + plate.pitch)
@@ -78,9 +76,7 @@ def test_a_window_is_straight_between_its_breakpoints_and_bends_at_them(
 
 @settings(max_examples=40)
 @given(lobes=lobes, width=st.floats(0.05, 0.5), ramp=shares, angle=angles)
-def test_windows_no_wider_than_half_a_pitch_never_join_supply_and_return(
-    lobes, width, ramp, angle
-):
+def test_windows_no_wider_than_half_a_pitch_never_join_supply_and_return(lobes, width, ramp, angle):
     plate = plate_of(lobes, width, ramp)
     both = plate.opening(plate.supply, angle) * plate.opening(plate.return_, angle)
     assert float(both) < 1e-12

@@ -1,0 +1,70 @@
+"""The reference motors that came with the issue, from another adaptive solver.
+
+The independent solver is tested first, then the product by the 1e-5 it promises.
+"""
+
+import numpy as np
+import pytest
+from reference_files import reference_machines, reference_results
+
+from camring.metrics.independent import solve_machine
+
+MOTORS = ("mid", "wheel_motor", "winch_motor", "mill_motor", "mid_aerated")
+
+# The references sample their extremes and integrate to 1e-10 of a large pressure; the
+# independent solver, converged to 1e-9, differs from them by at most this.
+REFERENCE_ACCURACY = 5e-6
+
+
+@pytest.mark.parametrize("name", MOTORS)
+def test_the_independent_solver_meets_the_references(name):
+    for machine, expected in zip(reference_machines(name), reference_results(name), strict=True):
+        found = solve_machine(machine, tolerance=1e-8).results
+        assert found.keys() >= expected.keys()
+        for result, value in expected.items():
+            assert found[result] == pytest.approx(value, rel=REFERENCE_ACCURACY, abs=1e-12), result
+
+
+@pytest.mark.parametrize("name", ["wheel_motor", "mid_aerated"])
+def test_the_independent_solver_has_converged(name):
+    machine = reference_machines(name)[0]
+    coarse = solve_machine(machine, tolerance=1e-8).results
+    fine = solve_machine(machine, tolerance=1e-11).results
+    for result, value in fine.items():
+        assert coarse[result] == pytest.approx(value, rel=1e-7, abs=1e-12), result
+
+
+@pytest.mark.parametrize("name", MOTORS)
+def test_the_independent_power_balance_closes(name):
+    for machine in reference_machines(name):
+        found = solve_machine(machine, tolerance=1e-8).results
+        losses = sum(found[f"{k}_loss"] for k in ("throttling", "leakage", "friction"))
+        losses += found["compression_loss"]
+        left = found["input_power"] - found["output_power"] - losses
+        assert abs(left) < 1e-8 * found["input_power"]
+
+
+def test_lsoda_and_radau_find_the_same_orbit():
+    """The stiff solver under the independent road is not taken on trust either."""
+    from scipy.integrate import solve_ivp
+
+    from camring.metrics.independent.orbit import periodic_orbit
+
+    machine = reference_machines("mid")[0]
+    orbit = periodic_orbit(machine, 1e-9)
+    chamber = orbit.chamber
+    pressure = float(orbit.pressure(np.array([chamber.edges[0]]))[0])
+    for start, end in zip(chamber.edges[:-1], chamber.edges[1:], strict=True):
+        shift = chamber.shift_at(start, end)
+        slopes = chamber.slopes(start, end, shift)
+        step = solve_ivp(
+            lambda angle, y, slopes=slopes: [slopes(float(y[0]), angle)[0]],
+            (start, end),
+            [chamber.state(pressure, shift)],
+            method="Radau",
+            rtol=1e-8,
+            atol=1e-11,
+        )
+        pressure = float(chamber.pressure(step.y[0, -1], shift))
+        expected = float(orbit.pressure(np.array([end - 1e-13]))[0])
+        assert abs(pressure - expected) < 1e-8 * chamber.scale
