@@ -27,13 +27,15 @@ from camring.interfaces.validation import Check, Validation
 from camring.objective.theory import theory_designs
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "wheel_motor.toml"
-MEMORY = {
-    "bayesian": {
-        "learned": {
-            "leave_one_out": {"plain": [0.31, 0.0], "rho = 1": [0.2, 1.0]},
-            "mean": "rho = 1",
-        }
-    }
+LEARNED = {"leave_one_out": {"plain": [0.31, 0.0], "rho = 1": [0.2, 1.0]}, "mean": "rho = 1"}
+MEMORY = {"begun": 0, "notes": [], "memories": [{"learned": LEARNED}, {}]}
+FACTS = {
+    "seed": "7",
+    "budget": "3",
+    "stopped": "budget spent.",
+    "given_name": "wheel_motor.toml",
+    "theory": "true",
+    "first_points": "[[0.5], [0.4]]",
 }
 
 
@@ -45,9 +47,7 @@ def study(tmp_path_factory) -> Path:
     space, system = motor_file.design_space, motor_file.system
     points = [space.locate(system), theory_designs(system, space, motor_file.goal.constraints)[0]]
     evaluate = MotorEvaluator(motor_file.text)
-    opened = StudyFolder.create(
-        folder, EXAMPLE.read_bytes(), {"seed": "7", "budget": "3", "stopped": "budget spent."}
-    )
+    opened = StudyFolder.create(folder, EXAMPLE.read_bytes(), FACTS)
     try:
         for trial, point in enumerate(points):
             record = Record(trial, "initial", point, evaluate(point), 0.0, 0.01)
@@ -91,6 +91,7 @@ def test_variables_are_in_the_units_of_the_file(data):
     width = by_name["motor.valve_plate.supply_width"]
     assert (width.unit, width.low, width.high) == ("deg", pytest.approx(27), pytest.approx(30))
     assert width.values[0] == pytest.approx(28.4)
+    assert shift.unit == "deg"  # the file has no value for it, but its bounds have a unit
     assert shift.values[0] == pytest.approx(0.0, abs=1e-9)
     assert by_name["cam cos 2"].unit == "mm"
 
@@ -102,6 +103,9 @@ def test_the_search_is_told_trial_by_trial(data):
     assert search.surrogate_used == "rho = 1"
     assert search.leave_one_out == {"plain": 0.31, "rho = 1": 0.2}
     assert search.stopped == "budget spent"
+    assert search.notes[0].startswith("The search began from the given motor and 1 design")
+    assert data.provenance.input_name == "wheel_motor.toml"
+    assert data.provenance.settings["To repeat"].endswith("--seed 7 --budget 3")
 
 
 def test_sensitivities_surround_the_best_design(data):

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from camring.interfaces.config import MotorFile
+from camring.interfaces.config.keys import key_map
 from camring.interfaces.report.data import Variable
 from camring.interfaces.units import UnitError, from_si, parse_unit, split_quantity
 
@@ -38,7 +39,7 @@ def coordinates_of(motor_file: MotorFile) -> tuple[Coordinate, ...]:
     for name in space.names:
         low, high = (values[name] for values in ends)
         # A cam mode's amplitude is a length; the others are written as the file writes them.
-        unit = _unit(motor_file.document, name) if name in keyed else "mm"
+        unit = _unit(motor_file, name) if name in keyed else "mm"
         found.append(Coordinate(name, unit, from_si(low, unit), from_si(high, unit)))
     return tuple(found)
 
@@ -59,15 +60,39 @@ def variables_of(
     )
 
 
-def _unit(document: dict[str, Any], path: str) -> str:
-    """The unit the file writes a number in; none for a bare number."""
-    here: Any = document
+def _unit(motor_file: MotorFile, path: str) -> str:
+    """The unit the file writes a number in: with its value, its bounds, or as by custom."""
+    document = motor_file.document
+    bounds = _bounds(document, path)
+    entry = key_map(motor_file.choices).get(path)
+    example = entry.example.strip('"') if entry is not None else None
+    for text in (_at(document, path), bounds, example):
+        unit = _unit_of(text)
+        if unit:
+            return unit
+    return ""
+
+
+def _at(document: Any, path: str) -> Any:
     for part in path.split("."):
-        here = here.get(part) if isinstance(here, dict) else None
-    if not isinstance(here, str):
+        document = document.get(part) if isinstance(document, dict) else None
+    return document
+
+
+def _bounds(document: dict[str, Any], path: str) -> Any:
+    """The lower bound of a variable, written in quotes or as nested tables."""
+    space = document.get("design_space", {})
+    found = space.get(path, _at(space, path))
+    if isinstance(found, dict):
+        found = found.get("bounds")
+    return found[0] if isinstance(found, list) and found else None
+
+
+def _unit_of(text: Any) -> str:
+    if not isinstance(text, str):
         return ""
     try:
-        unit = split_quantity(here)[1]
+        unit = split_quantity(text)[1]
         parse_unit(unit)
     except UnitError:
         return ""

@@ -1,5 +1,6 @@
 """From a study's folder, or from motor files, to everything a report shows."""
 
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from camring.interfaces.report.provenance import provenance_of
 from camring.interfaces.report.quantities import QUANTITIES, significant
 from camring.interfaces.report.sensitivity import sensitivities_of
 from camring.interfaces.report.simulation import design_of
-from camring.interfaces.report.trials import search_of
+from camring.interfaces.report.trials import search_of, starting_note
 from camring.interfaces.report.verdicts import read_verdict
 from camring.interfaces.study_folder import StudyFolder
 
@@ -66,10 +67,11 @@ def gather(folder: str | Path) -> ReportData:
             stopped=facts.get("stopped", ""),
             given=_given_trial(records, points),
             best=None if best_record is None else best_record.trial,
+            notes=_notes(records, facts),
         ),
         sensitivities=sensitivities_of(given, points[-1]) if len(points) == 2 else (),
         provenance=provenance_of(
-            given.path.name,
+            facts.get("given_name", given.path.name),
             given.text,
             "" if best is None else best.text,
             _settings(facts, records),
@@ -137,8 +139,21 @@ def _given_trial(records: Sequence[Record], points: Sequence[np.ndarray]) -> int
     return None
 
 
+def _notes(records: Sequence[Record], facts: Mapping[str, str]) -> list[str]:
+    try:
+        first = len(json.loads(facts.get("first_points", "[]")))
+    except ValueError:
+        first = 0
+    note = starting_note(records, first, facts.get("theory") == "true")
+    return [note] if note else []
+
+
 def _settings(facts: Mapping[str, str], records: Sequence[Record]) -> dict[str, str]:
     settings = {name.capitalize(): facts[name] for name in _SETTINGS if name in facts}
+    if "seed" in facts and "budget" in facts:
+        options = f"--seed {facts['seed']} --budget {facts['budget']}"
+        name = facts.get("given_name", "MOTOR.toml")
+        settings["To repeat"] = f"camring optimise {name} --out FOLDER {options}"
     seconds = sum(record.seconds for record in records)
     settings["Evaluations"] = f"{len(records)}, {seconds:.3g} s of computing"
     return settings

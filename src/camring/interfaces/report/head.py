@@ -1,6 +1,7 @@
 """The head of the report: the motor's name, the verdict, and the few numbers that matter first."""
 
 from camring.interfaces.report.data import ReportData
+from camring.interfaces.report.pictures.margins import plain_name
 from camring.interfaces.report.quantities import QUANTITIES, change, significant
 from camring.interfaces.report.svg import element, escape
 
@@ -68,14 +69,15 @@ def _keys(data: ReportData) -> str:
     margins = [c.margins[-1] for c in data.constraints]
     if margins:
         least = min(margins)
+        name = plain_name(data.constraints[margins.index(least)].name)
         text = f"{significant(100 * least, 2)}"
         shown = element("span", text + element("span", " %", class_="unit"), class_="now")
-        note = "a limit is broken" if least < 0 else "all limits kept"
+        note = f"{name}: a limit is broken" if least < 0 else f"{name}; all limits kept"
         keys.append(
             element(
                 "div",
                 element("dt", "Tightest margin"),
-                element("dd", shown, element("span", note, class_="was")),
+                element("dd", shown, element("span", escape(note), class_="was")),
                 class_="key",
             )
         )

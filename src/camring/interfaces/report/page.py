@@ -60,7 +60,19 @@ def _by_duty(data: ReportData, content: Callable[[int], str]) -> str:
 
 
 def _results(data: ReportData) -> str:
-    return _by_duty(data, lambda k: tables.result_table(data.designs, k))
+    parts = [_by_duty(data, lambda k: tables.result_table(data.designs, k))]
+    shares = [r.metrics.get("volumetric_efficiency", 0.0) for d in data.designs for r in d.results]
+    if max(shares) > 1:
+        parts.append(element("p", _ABOVE_ONE, class_="lead small"))
+    return "".join(parts)
+
+
+_ABOVE_ONE = (
+    "A volumetric efficiency above 100 % is a trait of the constant oil: it counts flow by volume, "
+    "the same at port and at chamber pressure, so oil that is pressed together by the piston "
+    "before the supply port opens is not counted as supplied. The aerated oil law, which keeps "
+    "mass, is free of it."
+)
 
 
 def _limits(data: ReportData) -> str:
@@ -103,15 +115,23 @@ def _contact(data: ReportData) -> str:
     return _by_duty(data, lambda k: plates(contact_figures(data.designs, k, data.constraints)))
 
 
+_MODES = (
+    "“cam cos k” and “cam sin k” are harmonic k of the lobe, added to the control radii with "
+    "this amplitude."
+)
+
+
 def _search(data: ReportData) -> str:
     if data.search is None:
         return ""
     parts = [plates([convergence_figure(data.search), pareto_figure(data)])]
     if data.variables:
         parts.append(tables.variable_table(data.variables, data.designs))
+        if any(variable.name.startswith("cam ") for variable in data.variables):
+            parts.append(element("p", _MODES, class_="lead small"))
     if data.search.leave_one_out:
         parts.append(tables.leave_one_out_table(data.search))
-    parts += [element("p", escape(note)) for note in data.search.notes]
+    parts += [element("p", escape(note), class_="lead small") for note in data.search.notes]
     return "".join(parts)
 
 
@@ -121,10 +141,21 @@ def _sensitivity(data: ReportData) -> str:
 
 def _validation(data: ReportData) -> str:
     parts = []
-    if data.verdict is not None and data.verdict.checks:
-        parts.append(tables.check_table(data.verdict))
-    if data.verdict is not None and data.verdict.views:
-        parts.append(tables.view_table(data.verdict))
+    verdict = data.verdict
+    if verdict is not None and verdict.views:
+        parts.append(tables.view_table(verdict))
+    if verdict is not None and verdict.checks:
+        passed = sum(check.passed for check in verdict.checks)
+        told = f"{passed} of {len(verdict.checks)} checks passed"
+        parts.append(
+            element(
+                "details",
+                element("summary", told),
+                tables.check_table(verdict),
+                # What failed is not to be folded away.
+                open=None if passed == len(verdict.checks) else "open",
+            )
+        )
     parts.append(tables.error_table(data))
     return "".join(parts)
 

@@ -123,10 +123,19 @@ def variable_table(variables: Sequence[Variable], designs: Sequence[Design]) -> 
             element("td", escape(_plainly(variable.high)), class_="n"),
         ]
         cells += [element("td", escape(_plainly(v)), class_="n") for v in variable.values]
-        cells.append(element("td", _place(variable)))
+        cells.append(element("td", _place(variable) + escape(_at_bound(variable))))
         name = element("th", element("code", escape(variable.name)), scope="row")
         rows.append(element("tr", name, *cells))
     return _table(head, rows, "What the search was allowed to change")
+
+
+def _at_bound(variable: Variable) -> str:
+    """Whether the last design stands on a bound, which may be worth widening."""
+    span = variable.high - variable.low
+    if span == 0:
+        return ""
+    part = (variable.values[-1] - variable.low) / span
+    return " at a bound" if min(part, 1 - part) < 1e-3 else ""
 
 
 def _plainly(value: float) -> str:

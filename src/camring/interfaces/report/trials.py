@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from camring.interfaces.record import Record
+from camring.interfaces.record import Record, best_of
 from camring.interfaces.report.coordinates import Coordinate
 from camring.interfaces.report.data import Search, Trial
 
-__all__ = ["leave_one_out", "phase_name", "search_of"]
+__all__ = ["leave_one_out", "phase_name", "search_of", "starting_note"]
 
 _PHASES = {
     "given": "initial design",
@@ -77,18 +77,44 @@ def _trial(record: Record, weights: Sequence[float], coordinates: Sequence[Coord
 
 def leave_one_out(memory: Any) -> tuple[dict[str, float], str]:
     """Errors by surrogate and the one in use, wherever the search's memory keeps them."""
-    if not isinstance(memory, Mapping):
+    if isinstance(memory, Sequence) and not isinstance(memory, str):
+        inside: Sequence[Any] = memory
+    elif isinstance(memory, Mapping):
+        found = memory.get("leave_one_out")
+        if isinstance(found, Mapping):
+            errors = {
+                str(name): float(value[0] if isinstance(value, list) else value)
+                for name, value in found.items()
+                if value is not None
+            }
+            return errors, str(memory.get("mean", ""))
+        inside = list(memory.values())
+    else:
         return {}, ""
-    found = memory.get("leave_one_out")
-    if isinstance(found, Mapping):
-        errors = {
-            str(name): float(value[0] if isinstance(value, list) else value)
-            for name, value in found.items()
-            if value is not None
-        }
-        return errors, str(memory.get("mean", ""))
-    for inner in memory.values():
+    for inner in inside:
         errors, used = leave_one_out(inner)
         if errors:
             return errors, used
     return {}, ""
+
+
+def starting_note(records: Sequence[Record], first: int, theory: bool) -> str:
+    """What the search began from, and how much better it ended."""
+    start = best_of(records[:first])
+    end = best_of(records)
+    if first < 1:
+        return ""
+    plural = "" if first == 2 else "s"
+    if theory and first > 1:
+        told = (
+            f"The search began from the given motor and {first - 1} design{plural} that theory "
+            "gives"
+        )
+    elif theory:
+        told = "The search began from the given motor; theory had no design that the space holds"
+    else:
+        told = "The search began from the given motor, without the help of theory"
+    if start is None or end is None:
+        return f"{told}."
+    before, after = start.outcome.objective, end.outcome.objective
+    return f"{told}; the best of these had J = {before:.4g}, the best in the end {after:.4g}."

@@ -10,6 +10,7 @@ import numpy as np
 
 from camring.interfaces.report.data import Check, Verdict, View
 from camring.interfaces.report.pictures.margins import plain_name
+from camring.interfaces.report.quantities import significant
 
 __all__ = ["read_verdict", "verdict_of"]
 
@@ -42,7 +43,7 @@ def verdict_of(document: Mapping[str, Any], weights: Sequence[float] = ()) -> Ve
         Check(
             _in_words(str(check.get("name", ""))),
             check.get("passed") is True,
-            str(check.get("detail", "")),
+            _detail_in_words(str(check.get("detail", ""))),
         )
         for check in document.get("checks", ())
         if isinstance(check, Mapping)
@@ -57,9 +58,17 @@ def verdict_of(document: Mapping[str, Any], weights: Sequence[float] = ()) -> Ve
 
 
 def _in_words(name: str) -> str:
-    """A check's name, its first word replaced when it is the key of a constraint."""
+    """A check's name with results for people, the words in their natural order."""
+    name = re.sub(r"^(the \w+ motor's) (.+) results$", r"\1 results \2", name)
     first, space, rest = name.partition(" ")
     return f"{plain_name(first)}{space}{rest}" if "_" in first else name[:1].upper() + name[1:]
+
+
+def _detail_in_words(detail: str) -> str:
+    margin = re.fullmatch(r"margin (-?[\d.]+(?:e-?\d+)?)", detail)
+    if margin:
+        return f"margin {significant(100 * float(margin[1]), 3)} %"
+    return re.sub(r"\b[a-z]+(_[a-z]+)+\b", lambda found: plain_name(found[0]).lower(), detail)
 
 
 def _sentence(document: Mapping[str, Any], validated: bool, checks: Sequence[Check]) -> str:

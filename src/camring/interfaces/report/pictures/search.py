@@ -47,10 +47,7 @@ def convergence_figure(search: Search) -> Figure | None:
     best = np.minimum.accumulate(np.where(good, objective, np.inf))
     best = np.where(np.isfinite(best), best, np.nan)
     log = bool((objective > 0).all())
-    seen = objective[good] if good.any() else objective
-    # A single hopeless trial must not flatten the picture: the top is cut, marks there are kept.
-    top = float(np.quantile(objective, 0.97)) if len(objective) > 20 else float(objective.max())
-    top = max(top, float(seen.max()))
+    top = _top(objective, good)
     drawn = np.minimum(objective, top)
     layers: list = [
         Region(start, end, name, _SHADES[k % len(_SHADES)])
@@ -86,15 +83,30 @@ def convergence_figure(search: Search) -> Figure | None:
             height=330.0,
         )
     )
-    return Figure("convergence", "Convergence of the search", svg, _search_words(search), wide=True)
+    return Figure(
+        "convergence",
+        "Convergence of the search",
+        svg,
+        _search_words(search, bool((objective > top).any())),
+        wide=True,
+    )
 
 
-def _search_words(search: Search) -> str:
+def _top(objective: np.ndarray, good: np.ndarray) -> float:
+    """Where to cut the picture: penalties of hopeless designs must not flatten the others."""
+    seen = objective[good] if good.any() else objective
+    middle = float(np.quantile(seen, 0.5))
+    return min(float(objective.max()), max(float(seen.max()), 3 * middle))
+
+
+def _search_words(search: Search, cut: bool) -> str:
     total = len(search.trials)
     feasible = sum(t.feasible and not t.failed for t in search.trials)
     failed = sum(t.failed for t in search.trials)
     text = f"{total} designs were evaluated, {feasible} of them kept every limit"
     text += f", {failed} could not be evaluated." if failed else "."
+    if cut:
+        text += " Crosses at the upper edge lie above it: their penalty is large."
     if search.stopped:
         text += f" The search stopped: {search.stopped}."
     return text
@@ -128,9 +140,11 @@ def pareto_figure(data: ReportData) -> Figure | None:
         Steps(ripple[front][order], loss[front][order], "front", Look("#0b5cad", None, 1.4)),
         _Designs(tuple(trials), ripple, loss, front),
     ]
+    # Below and left of the front there is room; the given motor lies above it.
+    places = {"given": ("middle", 9.0, 0.0), "best": ("end", -14.0, -6.0)}
     for number, text in ((search.given, "given"), (search.best, "best")):
         layers += [
-            Note(float(x), float(y), text, "middle", up=9.0)
+            Note(float(x), float(y), text, *places[text])
             for t, x, y in zip(trials, ripple, loss, strict=True)
             if t.number == number
         ]

@@ -16,6 +16,7 @@ from camring.interfaces.report.svg import element, words
 __all__ = ["tornado_figures"]
 
 MOST_ROWS = 14
+LEAST = 0.005  # of the largest effect; what does less is not drawn
 _FILLS = (("#ffffff", QUIET), ("#0b5cad", "#0b5cad"))  # moved down, moved up
 
 
@@ -25,7 +26,9 @@ def tornado_figures(sensitivities: Sequence[Sensitivity]) -> list[Figure]:
     for result in dict.fromkeys(s.result for s in sensitivities):
         chosen = [s for s in sensitivities if s.result == result]
         chosen.sort(key=_effect, reverse=True)
-        figures.append(_tornado(result, chosen[:MOST_ROWS], len(chosen)))
+        seen = [row for row in chosen if _effect(row) > LEAST * _effect(chosen[0])]
+        if seen:
+            figures.append(_tornado(result, seen[:MOST_ROWS], len(chosen)))
     return figures
 
 
@@ -73,12 +76,13 @@ def _tornado(result: str, rows: Sequence[Sensitivity], count: int) -> Figure:
         *pieces,
         bars.wall(0.0),
     )
-    shown = "" if count <= len(rows) else f" The {len(rows)} strongest of {count} are drawn."
+    shown = "" if count <= len(rows) else f" The other {count - len(rows)} do next to nothing."
     return Figure(
         name,
         f"What moves {label}",
         svg,
-        f"“{short_name(rows[0].variable)}” matters most: hold its tolerance first.{shown}",
+        f"Each variable is moved by the step on the right, all others held. "
+        f"“{short_name(rows[0].variable)}” matters most here.{shown}",
         wide=True,
     )
 
