@@ -1,11 +1,9 @@
 """The valve plate: where and how far each chamber is open to supply and return.
 
-A window answers with its opening, a number in [0, 1], at a signed angular
-distance from its centre. The shapes are exchangeable; the plate places one
-supply and one return window in every lobe pitch (model.md section 3).
+The plate places one supply and one return window in every lobe pitch, both of
+one shape and with the same relief notch, if any (model.md sections 3 and 13).
 """
 
-from abc import abstractmethod
 from math import pi
 
 import equinox as eqx
@@ -13,42 +11,11 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.geometry.angles import signed_distance
+from camring.geometry.notch import ReliefNotch
+from camring.geometry.window import AbstractWindow, LinearWindow
 from camring.numerics.quantity import Q, real
 
-
-class AbstractWindow(eqx.Module):
-    """Opening of one port window against the distance from its centre."""
-
-    @abstractmethod
-    def opening(
-        self, distance: Q[Float[Array, "*grid"], "rad"], width: Q[Float[Array, ""], "rad"]
-    ) -> Q[Float[Array, "*grid"], "1"]:
-        """Open share of the port area, in [0, 1]; zero outside the window."""
-
-    @abstractmethod
-    def edges(self, width: Q[Float[Array, ""], "rad"]) -> Q[Float[Array, " edge"], "rad"]:
-        """Distances from the centre where the opening is not smooth, ascending."""
-
-
-class LinearWindow(AbstractWindow):
-    """A trapezoid of opening: linear ramps, flat between them.
-
-    `alpha = clip((D/2 - |d|) / (ramp D/2), 0, 1)`; `ramp = 1` is the
-    derivation's triangle. model.md section 3.
-    """
-
-    ramp: Q[Float[Array, ""], "1"] = eqx.field(converter=real)
-
-    def opening(
-        self, distance: Q[Float[Array, "*grid"], "rad"], width: Q[Float[Array, ""], "rad"]
-    ) -> Q[Float[Array, "*grid"], "1"]:
-        half = width / 2
-        return jnp.clip((half - jnp.abs(distance)) / (self.ramp * half), 0, 1)
-
-    def edges(self, width: Q[Float[Array, ""], "rad"]) -> Q[Float[Array, " edge"], "rad"]:
-        half = width / 2
-        shoulder = half * (1 - self.ramp)
-        return jnp.stack([-half, -shoulder, shoulder, half])
+__all__ = ["AbstractWindow", "LinearWindow", "Port", "ValvePlate"]
 
 
 class Port(eqx.Module):
@@ -69,6 +36,7 @@ class ValvePlate(eqx.Module):
     return_: Port
     window: AbstractWindow
     shift: Q[Float[Array, ""], "rad"] = eqx.field(converter=real, default=0.0)
+    notch: ReliefNotch | None = None
     lobes: int = eqx.field(static=True, kw_only=True)
 
     @property
@@ -79,19 +47,26 @@ class ValvePlate(eqx.Module):
     @property
     def edge_count(self) -> int:
         """Window edges in one lobe pitch, both kinds of port."""
-        return sum(self.window.edges(port.width).shape[-1] for port in (self.supply, self.return_))
+        return sum(self._edges(port).shape[-1] for port in (self.supply, self.return_))
 
     def opening(
         self, port: Port, angle: Q[Float[Array, "*grid"], "rad"]
     ) -> Q[Float[Array, "*grid"], "1"]:
         """Open share of the port area that a chamber at `angle` sees of one kind of port."""
         distance = signed_distance(angle, port.centre + self.shift, self.pitch)
-        return self.window.opening(distance, port.width)
+        if self.notch is None:
+            return self.window.opening(distance, port.width)
+        return self.notch.opening(self.window, distance, port.width)
+
+    def _edges(self, port: Port) -> Q[Float[Array, " edge"], "rad"]:
+        """Distances from a port's centre where its opening is not smooth, ascending."""
+        if self.notch is None:
+            return self.window.edges(port.width)
+        return self.notch.edges(self.window, port.width)
 
     def breakpoints(self) -> Q[Float[Array, " edge"], "rad"]:
         """Window edges of both kinds within one lobe pitch, in [0, pitch], unsorted."""
         around = [
-            port.centre + self.shift + self.window.edges(port.width)
-            for port in (self.supply, self.return_)
+            port.centre + self.shift + self._edges(port) for port in (self.supply, self.return_)
         ]
         return jnp.concatenate(around) % self.pitch

@@ -44,7 +44,7 @@ def power_balance(cycle: Cycle, samples: QuadratureSamples) -> PowerBalance:
     at_supply = fluid.potential(point.supply_pressure)
     at_return = fluid.potential(point.return_pressure)
     speed = point.shaft_speed
-    damping = motor.friction.viscous_damping(motor.piston, fluid)
+    damping = motor.viscous_damping(fluid)
 
     def of_all(power: Float[Array, "element point"]) -> Float[Array, ""]:
         return motor.pistons * samples.mean(power)

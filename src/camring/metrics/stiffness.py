@@ -25,7 +25,7 @@ def oscillator(cycle: Cycle, mean_volume: Q[Float[Array, ""], "m3"]) -> Oscillat
     motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
     modulus = fluid.bulk_modulus_at((point.supply_pressure + point.return_pressure) / 2)
     stiffness = modulus * motor.piston.area**2 / mean_volume
-    damping = motor.friction.viscous_damping(motor.piston, fluid)
+    damping = motor.viscous_damping(fluid)
     return Oscillator(
         stiffness,
         jnp.sqrt(stiffness / motor.piston.mass),

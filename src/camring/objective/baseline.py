@@ -75,7 +75,7 @@ def _terms(system: System, point: OperatingPoint, goal: Goal) -> dict[str, Float
     ripple = chamber.transfer(orders * speed) * jnp.fft.rfft(lift)
     side = commutation_wave(motor.valve_plate, angle)
     pressure = point.return_pressure + drop * side + jnp.fft.irfft(ripple, count)
-    damping = motor.friction.viscous_damping(motor.piston, fluid)
+    damping = motor.viscous_damping(fluid)
     force = radial_force(motor.piston, pressure, point.case_pressure, radius, speed, damping)
     torque = torque_by_virtual_work(force, radius)
 
@@ -86,7 +86,7 @@ def _terms(system: System, point: OperatingPoint, goal: Goal) -> dict[str, Float
 
     mean_torque, torque_power = power(motor.pistons * torque, orders % motor.pistons == 0)
     mean_gauge, pressure_power = power(pressure - point.return_pressure, orders >= 0)
-    leaked = motor.leakage.conductance(motor.piston, fluid) * motor.pistons
+    leaked = motor.leakage_conductance(fluid) * motor.pistons
     supplied = ideal_flow + leaked * jnp.mean(side * (pressure - point.case_pressure))
     values = (
         torque_power / mean_torque**2,

@@ -9,6 +9,7 @@ pressure equation then serves every fluid:
 """
 
 from abc import abstractmethod
+from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -19,6 +20,17 @@ from camring.numerics.quantity import Q, real
 Pressure = Q[Float[Array, "*grid"], "Pa"]
 
 
+class OilAt(NamedTuple):
+    """What a unit of volume holds at a pressure; scalars where pressure makes no difference.
+
+    Between two pressures flows the mean of what they hold (model.md section 13).
+    """
+
+    density: Q[Float[Array, "*#grid"], "kg/m3"]
+    content: Float[Array, "*#grid"]
+    content_slope: Float[Array, "*#grid"]
+
+
 class AbstractFluid(eqx.Module):
     """An oil whose state is its pressure alone."""
 
@@ -26,6 +38,10 @@ class AbstractFluid(eqx.Module):
     """Density of the liquid at atmospheric pressure."""
     vapour_pressure: eqx.AbstractVar[Q[Float[Array, ""], "Pa"]]
     transition_pressure: eqx.AbstractVar[Q[Float[Array, ""], "Pa"]]
+    viscosity: eqx.AbstractVar[Q[Float[Array, ""], "m2/s"]]
+    """Kinematic viscosity; zero where no law asks for it."""
+    atmospheric_pressure: eqx.AbstractVar[Q[Float[Array, ""], "Pa"]]
+    """Pressure at which the oil met the air: below it, it gives all of that air back."""
 
     @abstractmethod
     def density_at(self, pressure: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
@@ -40,16 +56,8 @@ class AbstractFluid(eqx.Module):
         """Amount of oil in a unit of volume; an amount is what is conserved."""
 
     @abstractmethod
-    def content_slope(self, pressure: Pressure) -> Float[Array, "*grid"]:
-        """Derivative of the content with respect to pressure."""
-
-    @abstractmethod
-    def carried(self, upstream: Pressure, downstream: Pressure) -> Float[Array, "*grid"]:
-        """Amount in a unit of volume flowing between two pressures, either way round."""
-
-    @abstractmethod
-    def flowing_density(self, one: Pressure, other: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
-        """Density that an orifice between two pressures sees."""
+    def at(self, pressure: Pressure) -> OilAt:
+        """Density, content and the content's derivative by pressure, in one go."""
 
     @abstractmethod
     def potential(self, pressure: Pressure) -> Float[Array, "*grid"]:
@@ -91,6 +99,8 @@ class ConstantFluid(AbstractFluid):
     bulk_modulus: Q[Float[Array, ""], "Pa"] = eqx.field(converter=real)
     vapour_pressure: Q[Float[Array, ""], "Pa"] = eqx.field(converter=real)
     transition_pressure: Q[Float[Array, ""], "Pa"] = eqx.field(converter=real, default=1e5)
+    viscosity: Q[Float[Array, ""], "m2/s"] = eqx.field(converter=real, default=0.0)
+    atmospheric_pressure: Q[Float[Array, ""], "Pa"] = eqx.field(converter=real, default=101325.0)
 
     def density_at(self, pressure: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
         return jnp.broadcast_to(self.density, jnp.shape(pressure))
@@ -101,14 +111,8 @@ class ConstantFluid(AbstractFluid):
     def content(self, pressure: Pressure) -> Float[Array, "*grid"]:
         return jnp.ones_like(pressure)
 
-    def content_slope(self, pressure: Pressure) -> Float[Array, "*grid"]:
-        return jnp.broadcast_to(1 / self.bulk_modulus, jnp.shape(pressure))
-
-    def carried(self, upstream: Pressure, downstream: Pressure) -> Float[Array, "*grid"]:
-        return jnp.ones_like(downstream)
-
-    def flowing_density(self, one: Pressure, other: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
-        return self.density
+    def at(self, pressure: Pressure) -> OilAt:
+        return OilAt(self.density, jnp.ones(()), 1 / self.bulk_modulus)
 
     def potential(self, pressure: Pressure) -> Float[Array, "*grid"]:
         return pressure

@@ -66,7 +66,7 @@ def linear_chamber(
 ) -> LinearChamber:
     """The chamber linearised about mean volume and the mean flow of an open port."""
     middle = (point.supply_pressure + point.return_pressure) / 2
-    leakage = motor.leakage.conductance(motor.piston, fluid)
+    leakage = motor.leakage_conductance(fluid)
     return LinearChamber(
         volume=mean_volume,
         piston_area=motor.piston.area,

@@ -15,10 +15,11 @@ from camring.geometry.piston import Piston, Roller
 from camring.geometry.valve_plate import ValvePlate
 from camring.numerics.periodic import LAYER_ELEMENTS, Breakpoints
 from camring.numerics.quantity import Q, real
+from camring.physics.fluid import AbstractFluid
 from camring.physics.friction import AbstractFriction
+from camring.physics.gap import PistonGap
 from camring.physics.leakage import AbstractLeakage
 from camring.physics.orifice import AbstractOrifice
-
 
 SAME_ANGLE = 1e-9
 """Breakpoints nearer than this, in rad, count as one."""
@@ -41,6 +42,7 @@ class Motor(eqx.Module):
     orifice: AbstractOrifice
     leakage: AbstractLeakage
     friction: AbstractFriction
+    gap: PistonGap | None = None
     given_reference_radius: Q[Float[Array, ""], "m"] = eqx.field(
         converter=real, default=float("nan")
     )
@@ -61,6 +63,20 @@ class Motor(eqx.Module):
         For a ring without lobe symmetry it is the number of pistons.
         """
         return lcm(self.pistons, self.cam.repeats)
+
+    def leakage_conductance(self, fluid: AbstractFluid) -> Q[Float[Array, ""], "m3/(s.Pa)"]:
+        """Volume flow past one piston for each pascal between chamber and case."""
+        coefficient = self.leakage.conductance(self.piston, fluid)
+        if self.gap is None:
+            return coefficient
+        return coefficient + self.gap.leakage_conductance(self.piston, fluid)
+
+    def viscous_damping(self, fluid: AbstractFluid) -> Q[Float[Array, ""], "N.s/m"]:
+        """Force against one piston's motion for each metre a second."""
+        coefficient = self.friction.viscous_damping(self.piston, fluid)
+        if self.gap is None:
+            return coefficient
+        return coefficient + self.gap.film_damping(self.piston, fluid)
 
     def breakpoints(self) -> Breakpoints:
         """Angles in one cam period where cam or openings are not smooth.

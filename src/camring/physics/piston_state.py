@@ -55,7 +55,7 @@ def _state(cycle: Cycle, angle: Array, radius: Jet, chamber: Chamber, state: Arr
     motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
     pressure = fluid.pressure(state)
     flows = port_flows(motor, fluid, point, chamber, pressure)
-    damping = motor.friction.viscous_damping(motor.piston, fluid)
+    damping = motor.viscous_damping(fluid)
     force = radial_force(
         motor.piston, pressure, point.case_pressure, radius, point.shaft_speed, damping
     )

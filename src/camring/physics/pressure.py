@@ -11,7 +11,7 @@ from typing import NamedTuple
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q
-from camring.physics.fluid import AbstractFluid
+from camring.physics.fluid import AbstractFluid, OilAt
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
 
@@ -41,20 +41,31 @@ def port_flows(
     pressure: Q[Float[Array, "*grid"], "Pa"],
 ) -> PortFlows:
     """Signed flows at a chamber pressure, in the fluid's amounts a second."""
+    return _flows(motor, fluid, point, chamber, pressure, fluid.at(pressure))
 
+
+def _flows(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    chamber: Chamber,
+    pressure: Q[Float[Array, "*grid"], "Pa"],
+    here: OilAt,
+) -> PortFlows:
     def through(
         area: Q[Float[Array, "*grid"], "m2"], port_pressure: Q[Float[Array, ""], "Pa"]
     ) -> Float[Array, "*grid"]:
-        density = fluid.flowing_density(port_pressure, pressure)
+        there = fluid.at(port_pressure)
+        density = (here.density + there.density) / 2
         flow = motor.orifice(area, port_pressure - pressure, density, fluid)
-        return fluid.carried(port_pressure, pressure) * flow
+        return (here.content + there.content) / 2 * flow
 
-    conductance = motor.leakage.conductance(motor.piston, fluid)
-    leakage = conductance * (pressure - point.case_pressure)
+    in_case = fluid.at(point.case_pressure).content
+    leakage = motor.leakage_conductance(fluid) * (pressure - point.case_pressure)
     return PortFlows(
         through(chamber.supply_area, point.supply_pressure),
         through(chamber.return_area, point.return_pressure),
-        fluid.carried(point.case_pressure, pressure) * leakage,
+        (here.content + in_case) / 2 * leakage,
     )
 
 
@@ -66,7 +77,7 @@ def pressure_slope(
     pressure: Q[Float[Array, "*grid"], "Pa"],
 ) -> Q[Float[Array, "*grid"], "Pa/rad"]:
     """dP/dtheta of a chamber, model.md sections 3 and 13."""
-    flows = port_flows(motor, fluid, point, chamber, pressure)
+    here = fluid.at(pressure)
+    flows = _flows(motor, fluid, point, chamber, pressure, here)
     net = (flows.supply + flows.return_ - flows.leakage) / point.shaft_speed
-    swept = fluid.content(pressure) * chamber.volume_slope
-    return (net - swept) / (fluid.content_slope(pressure) * chamber.volume)
+    return (net - here.content * chamber.volume_slope) / (here.content_slope * chamber.volume)

@@ -7,6 +7,7 @@ import numpy as np
 
 from camring.geometry.cam import AbstractCam, PlanarCam, RadialCam
 from camring.geometry.material import Material
+from camring.geometry.notch import ReliefNotch
 from camring.geometry.piston import Piston, Roller
 from camring.geometry.sampling import from_first
 from camring.geometry.valve_plate import Port, ValvePlate
@@ -15,12 +16,15 @@ from camring.interfaces.config.laws import SLOTS, Slot, law_keys
 from camring.interfaces.config.tables import (
     CamTable,
     FileTables,
+    GapTable,
     OperatingPointTable,
     PlanarCamTable,
     RadialCamTable,
     RollerTable,
+    ValvePlateTable,
 )
 from camring.numerics.quantity import real
+from camring.physics.gap import PistonGap
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.system import System
@@ -46,6 +50,7 @@ def build_system(tables: FileTables, choices: Choices) -> System:
             orifice=laws["motor.orifice"],
             leakage=laws["motor.leakage"],
             friction=laws["motor.friction"],
+            gap=_gap(motor.gap),
             given_reference_radius=real(given),
             reference=rule,
             pistons=motor.pistons,
@@ -99,8 +104,21 @@ def _valve_plate(tables: FileTables, window: Any) -> ValvePlate:
         return_=Port(width=real(plate.return_width), centre=real(back)),
         window=window,
         shift=real(plate.shift),
+        notch=_notch(plate),
         lobes=lobes,
     )
+
+
+def _notch(plate: ValvePlateTable) -> ReliefNotch | None:
+    if plate.notch_angle is None or plate.notch_area is None:
+        return None
+    return ReliefNotch(angle=real(plate.notch_angle), area=real(plate.notch_area))
+
+
+def _gap(gap: GapTable | None) -> PistonGap | None:
+    if gap is None:
+        return None
+    return PistonGap(real(gap.clearance), real(gap.length), real(gap.eccentricity))
 
 
 def _operating_point(point: OperatingPointTable) -> OperatingPoint:

@@ -12,14 +12,14 @@ sanity, meaning, an example) may be added to `KNOWN_FIELDS`.
 import inspect
 import pkgutil
 import re
-from dataclasses import MISSING, dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields, replace
 from functools import cache
 from importlib import import_module
 from typing import Any, get_args, get_type_hints
 
 import camring.geometry
 import camring.physics
-from camring.geometry.valve_plate import AbstractWindow
+from camring.geometry.window import AbstractWindow
 from camring.interfaces.config.entries import Entry, Number, Numbers
 from camring.physics.fluid import AbstractFluid
 from camring.physics.friction import AbstractFriction
@@ -71,12 +71,17 @@ SLOTS = (
         "friction",
         "motor.friction",
         "viscous",
-        {"damping": "motor.viscous_damping"},
+        {
+            "damping": "motor.viscous_damping",
+            "roller": "motor.roller.friction",
+            "side": "motor.side_friction",
+        },
     ),
 )
 
 # File defaults where the class has none; limits of sanity, meaning and example.
 FILE_DEFAULTS = {"motor.valve_plate.ramp": 1.0}
+LEAST_KNOTS = 2  # in a list that a law takes
 
 KNOWN_FIELDS: dict[str, tuple[str, str, float, float]] = {
     "fluid.density": ("the density of the oil", '"870 kg/m^3"', 1.0, 3e4),
@@ -88,6 +93,43 @@ KNOWN_FIELDS: dict[str, tuple[str, str, float, float]] = {
         1.0,
         1e8,
     ),
+    "fluid.viscosity": ("the kinematic viscosity", '"46 mm^2/s"', 1e-9, 1.0),
+    "fluid.atmospheric_pressure": (
+        "the pressure at which the oil took up its air",
+        '"1.01325 bar"',
+        1e3,
+        1e7,
+    ),
+    "fluid.air_fraction": ("the free air by volume at that pressure", "0.005", 0.0, 0.5),
+    "fluid.air_density": ("the density of that air", '"1.2 kg/m^3"', 0.0, 100.0),
+    "fluid.polytropic_index": ("the polytropic index of the air", "1.4", 0.5, 5.0),
+    "fluid.dissolution_pressure": (
+        "the pressure above which all air is in solution",
+        '"30 bar"',
+        1e4,
+        1e9,
+    ),
+    "fluid.modulus_gain": ("the rise of bulk modulus with pressure", "9", 0.0, 100.0),
+    "motor.valve_plate.critical_flow_number": (
+        "the flow number at which an orifice turns turbulent",
+        "1000",
+        1e-3,
+        1e9,
+    ),
+    "motor.valve_plate.position": (
+        "distances from a window's centre over half its width",
+        "-0.5",
+        -1.0,
+        1.0,
+    ),
+    "motor.valve_plate.opening_share": (
+        "the open shares of the port area there",
+        "0.8",
+        0.0,
+        1.0,
+    ),
+    "motor.roller.friction": ("the roller's friction coefficient", "0.013", 0.0, 1.0),
+    "motor.side_friction": ("the friction coefficient of piston on bore", "0.05", 0.0, 1.0),
     "motor.valve_plate.discharge_coefficient": ("the discharge coefficient", "0.65", 1e-6, 2.0),
     "motor.valve_plate.ramp": ("the ramps' share of a window", "0.35", 1e-4, 1.0),
     "motor.leakage_coefficient": (
@@ -138,7 +180,9 @@ def _entry(path: str, annotation: Any, leaf: str) -> Entry:
     number = Number(meaning, example, unit=unit, low=low, high=high, leaves=(leaf,))
     if getattr(array, "dim_str", "") == "":
         return number
-    return Numbers(f"{meaning}, a list", f"[{example}, ...]", item=number, leaves=(leaf,))
+    item = replace(number, meaning=f"one of {meaning}", leaves=())
+    listed = f"[{example}, ...]"
+    return Numbers(meaning, listed, item=item, fewest=LEAST_KNOTS, leaves=(leaf,))
 
 
 @cache

@@ -13,6 +13,7 @@ from camring.interfaces.config.design import build_design_space
 from camring.interfaces.config.document import parse, printable, read_text
 from camring.interfaces.config.goal import build_goal
 from camring.interfaces.config.keys import Choices, choose, file_tables
+from camring.interfaces.config.oil import with_oil
 from camring.interfaces.config.soundness import require_sound
 from camring.interfaces.config.tables import FileTables, SearchTable
 from camring.interfaces.config.translate import input_error
@@ -107,6 +108,6 @@ def validated(document: dict[str, Any]) -> tuple[Choices, FileTables]:
     """The document as tables of SI numbers, each key checked on its own."""
     choices = choose(document)
     try:
-        return choices, file_tables(choices).model_validate(document)
+        return choices, file_tables(choices).model_validate(with_oil(document))
     except ValidationError as error:
         raise input_error(error, choices) from None

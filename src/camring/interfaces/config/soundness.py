@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from camring.geometry.sampling import Samples, from_first, sample_spline, turning
+from camring.interfaces.config.sound_laws import require_sound_laws
 from camring.interfaces.config.tables import (
     CamTable,
     ConstraintsTable,
@@ -30,6 +31,7 @@ def require_sound(tables: FileTables, document: dict[str, Any]) -> None:
     """
     motor, given = tables.motor, document["motor"]
     _require_windows_fit(motor, given["valve_plate"])
+    require_sound_laws(tables, document)
     _require_volume(motor, given, _pitch_radius(motor, given["cam"]))
     _require_drop(tables, document["operating_points"])
     _require_an_aim(tables.objective)

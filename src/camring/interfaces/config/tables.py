@@ -20,6 +20,7 @@ from camring.interfaces.config.entries import (
     Word,
     band,
 )
+from camring.physics.oils import OILS
 
 MOST_POINTS = 50  # operating points in one file
 FULL_TURN = 6.283185307179586
@@ -163,6 +164,52 @@ class ValvePlateTable(Table):
         float,
         _angle("the turn of the whole plate", '"0.5 deg"', "motor.valve_plate.shift"),
     ] = 0.0
+    notch_angle: Key[
+        float | None,
+        Number(
+            "the angle from a relief notch's tip to the port's opening edge",
+            '"1.5 deg"',
+            unit="rad",
+            low=1e-5,
+            high=FULL_TURN,
+            leaves=("motor.valve_plate.notch.angle",),
+        ),
+    ] = None
+    notch_area: Key[
+        float | None,
+        Number(
+            "the relief notch's share of the port area",
+            "0.03",
+            high=1.0,
+            leaves=("motor.valve_plate.notch.area",),
+        ),
+    ] = None
+
+
+class GapTable(Table):
+    """[motor.gap]: the gap between piston and bore."""
+
+    clearance: Key[
+        float,
+        Number(
+            "the radial clearance of piston in bore",
+            '"15 um"',
+            unit="m",
+            low=1e-8,
+            high=0.01,
+            leaves=("motor.gap.clearance",),
+        ),
+    ]
+    length: Key[float, _length("the length of the gap", '"30 mm"', "motor.gap.length", 1e-5)]
+    eccentricity: Key[
+        float,
+        Number(
+            "the piston's eccentricity over the clearance",
+            "0.5",
+            high=1.0,
+            leaves=("motor.gap.eccentricity",),
+        ),
+    ] = 0.0
 
 
 class MotorTable(Table):
@@ -197,6 +244,20 @@ class MotorTable(Table):
     cam: CamTable
     roller: RollerTable
     valve_plate: ValvePlateTable
+    gap: GapTable | None = None
+
+
+class FluidTable(Table):
+    """[fluid]: an oil by its name; the keys of the law follow below."""
+
+    oil: Key[
+        str | None,
+        Word("an oil whose data stand for the keys that are not given", '"ISO VG 46"', words=OILS),
+    ] = None
+    temperature: Key[
+        float | None,
+        Number("the oil's temperature", '"50 degC"', unit="K", low=230.0, high=420.0),
+    ] = None
 
 
 def _pressure(meaning: str, example: str, low: float = 0.0) -> Number:
@@ -294,7 +355,7 @@ class FileTables(Table):
     """The whole file; `design_space` is read by `design.py` once the motor stands."""
 
     motor: MotorTable
-    fluid: Table
+    fluid: FluidTable
     operating_points: list[OperatingPointTable]
     objective: ObjectiveTable = ObjectiveTable()
     constraints: ConstraintsTable = ConstraintsTable()
@@ -308,6 +369,8 @@ __all__ = [
     "CamTable",
     "ConstraintsTable",
     "FileTables",
+    "FluidTable",
+    "GapTable",
     "MotorTable",
     "ObjectiveTable",
     "OperatingPointTable",

@@ -5,6 +5,7 @@ none of the program's own physics is used, so that a fault there cannot hide by
 being made twice.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from math import nan, pi
 from typing import Any, Literal
@@ -116,34 +117,54 @@ def _oil(fluid: Any) -> Oil:
     return Oil(**given, law="aerated" if kind == "AeratedFluid" else "constant")
 
 
+SHAPES: dict[str, Literal["linear", "round", "table"]] = {
+    "LinearWindow": "linear",
+    "RoundWindow": "round",
+    "TabulatedWindow": "table",
+}
+ORIFICES: dict[str, Literal["turbulent", "laminar-turbulent"]] = {
+    "TurbulentOrifice": "turbulent",
+    "LaminarTurbulentOrifice": "laminar-turbulent",
+}
+
+
+def _kind(law: Any, known: Collection[str]) -> str:
+    kind = type(law).__name__
+    if kind not in known:
+        raise NotImplementedError(f"the independent solver has no law {kind!r}")
+    return kind
+
+
 def _window(plate: Any, port: Any) -> Window:
     shape = plate.window
-    kind = type(shape).__name__
-    if kind not in ("LinearWindow", "RoundWindow"):
-        raise NotImplementedError(f"the independent solver has no window {kind!r}")
-    return Window(
-        width=number(port.width),
-        centre=number(port.centre) + number(plate.shift),
-        ramp=number(shape.ramp),
-        shape="round" if kind == "RoundWindow" else "linear",
-    )
+    kind = SHAPES[_kind(shape, SHAPES)]
+    width = number(port.width)
+    window = Window(width, number(port.centre) + number(plate.shift), kind)
+    if kind == "table":
+        knots = np.asarray(shape.position, float) * width / 2
+        shares = np.asarray(shape.opening_share, float)
+        window = replace(window, table=(tuple(knots.tolist()), tuple(shares.tolist())))
+    else:
+        window = replace(window, ramp=number(shape.ramp))
+    notch = getattr(plate, "notch", None)
+    if notch is None:
+        return window
+    return replace(window, notch_angle=number(notch.angle), notch_area=number(notch.area))
 
 
 def machine_of(motor: Any, fluid: Any, point: Any) -> Machine:
     """Read the nouns of `camring.physics` into plain numbers."""
     cam, plate = motor.cam, motor.valve_plate
-    kinds = [type(law).__name__ for law in (motor.orifice, motor.leakage, motor.friction)]
-    known = ["TurbulentOrifice", "ConstantLeakage", "ViscousFriction"]
-    for kind, expected in zip(kinds, known, strict=True):
-        if kind != expected:
-            raise NotImplementedError(f"the independent solver has no law {kind!r}")
+    _kind(motor.leakage, ["ConstantLeakage"])
+    _kind(motor.friction, ["ViscousFriction"])
+    orifice = ORIFICES[_kind(motor.orifice, ORIFICES)]
     if hasattr(cam, "control_points"):
         points = np.asarray(cam.control_points, dtype=float)
         control = points[:, 0] + 1j * points[:, 1]
     else:
         control = np.asarray(cam.control_radii, dtype=float)
     given = number(getattr(motor, "given_reference_radius", nan))
-    return Machine(
+    machine = Machine(
         pistons=motor.pistons,
         lobes=motor.lobes,
         bore=number(motor.piston.bore),
@@ -170,4 +191,12 @@ def machine_of(motor: Any, fluid: Any, point: Any) -> Machine:
         supply_pressure=number(point.supply_pressure),
         return_pressure=number(point.return_pressure),
         case_pressure=number(point.case_pressure),
+        orifice=orifice,
+        critical_flow_number=number(getattr(motor.orifice, "critical_flow_number", 1000.0)),
+        roller_friction=number(getattr(motor.friction, "roller", 0.0)),
+        side_friction=number(getattr(motor.friction, "side", 0.0)),
     )
+    gap = getattr(motor, "gap", None)
+    if gap is None:
+        return machine
+    return machine.with_gap(number(gap.clearance), number(gap.length), number(gap.eccentricity))

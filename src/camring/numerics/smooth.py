@@ -1,0 +1,41 @@
+"""Functions with a removable singularity, smooth and differentiable through it."""
+
+import jax.numpy as jnp
+from jaxtyping import Array, Float
+
+NEAR = 1e-2
+"""Where a series of eight terms takes over: its error there is below 1e-16."""
+
+
+def _series(x: Float[Array, "*grid"], coefficients: list[float]) -> Float[Array, "*grid"]:
+    total = jnp.zeros_like(x)
+    for coefficient in reversed(coefficients):
+        total = total * x + coefficient
+    return total
+
+
+def exponential_mean(x: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
+    """`(e^x - 1)/x`, the mean of the exponential between 0 and x; 1 at zero."""
+    near = jnp.abs(x) < NEAR
+    far = jnp.where(near, 1.0, x)
+    factorial, coefficients = 1.0, []
+    for k in range(1, 9):
+        factorial *= k
+        coefficients.append(1 / factorial)
+    return jnp.where(near, _series(jnp.where(near, x, 0.0), coefficients), jnp.expm1(far) / far)
+
+
+def logarithmic_mean(x: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
+    """`ln(1 + x)/x`, the mean of `1/(1 + x)` between 0 and x > -1; 1 at zero."""
+    near = jnp.abs(x) < NEAR
+    far = jnp.where(near, 1.0, x)
+    coefficients = [(-1) ** k / (k + 1) for k in range(8)]
+    return jnp.where(near, _series(jnp.where(near, x, 0.0), coefficients), jnp.log1p(far) / far)
+
+
+def tanh_ratio(squared: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
+    """`tanh(z)/z` of `z^2`, for `z^2 >= 0`; 1 at zero, with a finite slope there."""
+    near = squared < NEAR**2
+    root = jnp.sqrt(jnp.where(near, 1.0, squared))
+    series = _series(jnp.where(near, squared, 0.0), [1.0, -1 / 3, 2 / 15, -17 / 315])
+    return jnp.where(near, series, jnp.tanh(root) / root)
