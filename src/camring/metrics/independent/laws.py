@@ -69,6 +69,9 @@ class OilLaw:
     def __init__(self, oil: Oil) -> None:
         self.oil = oil
         self.aerated = oil.law == "aerated"
+        # Air keeps the pressure above zero, so its logarithm is a fit unknown; without
+        # air the liquid can be pulled.
+        self.logarithmic = self.aerated and oil.air_fraction > 0
         self._air = oil.air_fraction / (1 - oil.air_fraction)
         self._mass = oil.density + self._air * oil.air_density
 
@@ -78,7 +81,7 @@ class OilLaw:
         x = min(max((pressure - p0) / (oil.dissolution_pressure - p0), 0.0), 1.0)
         share = 1 - x * x * (3 - 2 * x)
         share_slope = -6 * x * (1 - x) / (oil.dissolution_pressure - p0)
-        gas = self._air * (p0 / pressure) ** (1 / oil.polytropic_index)
+        gas = self._air * (p0 / pressure) ** (1 / oil.polytropic_index) if self._air else 0.0
         strain = (pressure - p0) / oil.bulk_modulus
         gain = oil.modulus_gain
         liquid = (1 + gain * strain) ** (-1 / gain) if gain > 0 else exp(-strain)
@@ -100,15 +103,22 @@ class OilLaw:
         return -self._mass * slope / volume**2
 
     def enthalpy(self, pressure: np.ndarray) -> np.ndarray:
-        """Integral of dP/rho from atmospheric pressure, J/kg, by Gauss quadrature in ln P."""
+        """Integral of dP/rho from atmospheric pressure, J/kg, by Gauss quadrature.
+
+        In the logarithm of pressure where there is air, in pressure where there is none.
+        """
         p0, pc = self.oil.atmospheric_pressure, self.oil.dissolution_pressure
         nodes, weights = np.polynomial.legendre.leggauss(40)
 
         def between(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-            a, b = np.log(low)[..., None], np.log(high)[..., None]
-            at = np.exp((a + b) / 2 + (b - a) / 2 * nodes)
+            a, b = low[..., None], high[..., None]
+            if self.logarithmic:
+                a, b = np.log(a), np.log(b)
+            at = (a + b) / 2 + (b - a) / 2 * nodes
+            at = np.exp(at) if self.logarithmic else at
             inverse = np.array([self._volume(p)[0] for p in at.ravel()]).reshape(at.shape)
-            return np.sum(weights * at * inverse, axis=-1) * ((b - a) / 2)[..., 0] / self._mass
+            inverse = inverse * (at if self.logarithmic else 1.0)
+            return np.sum(weights * inverse, axis=-1) * ((b - a) / 2)[..., 0] / self._mass
 
         pressure = np.asarray(pressure, float)
         rising = between(np.full_like(pressure, p0), np.minimum(pressure, pc))

@@ -15,7 +15,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import exp, inf, log, pi
+from math import exp, expm1, inf, log, pi
 
 import numpy as np
 from scipy.fft import dct
@@ -28,6 +28,7 @@ from camring.metrics.independent.shape import Piece, PitchCurve
 ORDER = 16
 NODES = np.cos(pi * np.arange(ORDER + 1) / ORDER)[::-1]
 FINEST = 1e-9  # shortest element, of the period
+MOST_ELEMENTS = 5000  # between two kinks; a sound motor needs a few
 
 
 class OrbitError(RuntimeError):
@@ -113,7 +114,7 @@ class Chamber:
     ) -> Callable[[float, float], tuple[float, float]]:
         """(y, theta) -> (dy/dtheta, P) on a stretch without kinks.
 
-        `P = shift + scale y`, or `P = shift e^y` for the aerated oil.
+        `P = shift + scale y`, or `P = shift e^y` for oil with air in it.
         """
         m, middle = self.machine, (start + end) / 2
         piece, turns = self.piece_at(middle)
@@ -156,9 +157,11 @@ class Chamber:
         rho_supply, rho_return = rho(m.supply_pressure), rho(m.return_pressure)
         rho_case = rho(case)
 
+        logarithmic = self.oil.logarithmic
+
         def aerated(y: float, angle: float) -> tuple[float, float]:
             volume, swept = motion(angle)
-            above = shift * np.expm1(y)
+            above = shift * expm1(y) if logarithmic else unit * y
             pressure = shift + above
             here = rho(pressure)
             net = -(here + rho_case) / 2 * leak * (pressure - case) / speed - here * swept
@@ -170,15 +173,16 @@ class Chamber:
             if share > 0:
                 mean = (here + rho_return) / 2
                 net += mean * flow(port * share, to_return - above, mean) / speed
-            return net / (volume * rho_slope(pressure) * pressure), pressure
+            size = pressure if logarithmic else unit
+            return net / (volume * rho_slope(pressure) * size), pressure
 
         return aerated if self.oil.aerated else stiff
 
     def state(self, pressure: float, shift: float) -> float:
-        return log(pressure / shift) if self.oil.aerated else (pressure - shift) / self.scale
+        return log(pressure / shift) if self.oil.logarithmic else (pressure - shift) / self.scale
 
     def pressure(self, state: np.ndarray, shift: np.ndarray) -> np.ndarray:
-        return shift * np.exp(state) if self.oil.aerated else shift + self.scale * state
+        return shift * np.exp(state) if self.oil.logarithmic else shift + self.scale * state
 
     def shift_at(self, start: float, end: float) -> float:
         """Pressure of the wider open port on a stretch."""
@@ -238,7 +242,8 @@ def _follow(
     chamber: Chamber, start: float, end: float, pressure: float, tolerance: float
 ) -> list[Element]:
     """Integrate from one kink to the next in elements that the series resolves."""
-    finest, elements = FINEST * chamber.curve.period, []
+    finest = FINEST * chamber.curve.period
+    elements: list[Element] = []
     rtol = max(tolerance / 10, 1e-13)
     atol = rtol * 1e-4
     at, step = start, end - start
@@ -266,6 +271,8 @@ def _follow(
         if tail > 3 * rtol * float(np.max(np.abs(values))) + 10 * atol and to - at >= finest:
             step = (to - at) / 2
             continue
+        if len(elements) > MOST_ELEMENTS:
+            raise OrbitError(f"more than {MOST_ELEMENTS} elements between two kinks")
         elements.append(
             Element(at, to, shift, series, float(values[-1]), _exponent(slopes, nodes, values))
         )
@@ -360,7 +367,7 @@ def periodic_orbit(machine: Machine, tolerance: float = 1e-10) -> Orbit:
             raise OrbitError(
                 "the chamber neither leaks nor meets an open port: any pressure is periodic"
             )
-        if chamber.oil.aerated:
+        if chamber.oil.logarithmic:
             pressure *= exp(min(max(log(after / pressure) / slack, -3.0), 3.0))
         else:
             pressure += orbit.residual / slack

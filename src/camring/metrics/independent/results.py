@@ -71,7 +71,7 @@ def flows(orbit: Orbit, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
     for k, (at, y, shift) in enumerate(
         zip(angle.tolist(), states.tolist(), shifts.tolist(), strict=True)
     ):
-        above = shift * float(np.expm1(y)) if aerated else chamber.scale * y
+        above = shift * float(np.expm1(y)) if chamber.oil.logarithmic else chamber.scale * y
         pressure = shift + above
         ports = (
             (m.supply, chamber.supply_opening, m.supply_pressure),
