@@ -225,7 +225,8 @@ SPACE_FAULTS = {
         ['motor.bore"[0]', "a length, not a plain number"],
     ),
     "share with companions at zero": (
-        '"motor.bore" = { relative = ["-1 %", "1 %"], together_with = ["motor.valve_plate.shift"] }',
+        '"motor.bore" = { relative = ["-1 %", "1 %"],'
+        ' together_with = ["motor.valve_plate.shift"] }',
         ["relative bounds but the given value is zero"],
     ),
     "share beyond the pitch": (

@@ -1,0 +1,46 @@
+"""`camring simulate`: every result of a motor, with its numerical error."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+FAILED = 1
+
+
+def simulate(
+    motor: Annotated[Path, typer.Argument(help="Motor file.")],
+    json: Annotated[
+        bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
+    ] = False,
+    waveforms: Annotated[
+        Path | None,
+        typer.Option("--waveforms", help="Write one revolution to this NetCDF file."),
+    ] = None,
+) -> None:
+    """Simulate a motor at its operating points and print every result.
+
+    Each operating point is one column; results below carry their numerical
+    error. Warnings tell of an undercut, cavitation or a roller that lifts off.
+    """
+    from camring.interfaces.compilation_cache import keep_compiled_programs
+
+    keep_compiled_programs()
+
+    from camring.interfaces.config import read_motor_file
+    from camring.interfaces.simulated import simulated
+    from camring.interfaces.simulation_output import document, print_table
+
+    file = read_motor_file(motor)
+    found = simulated(file)
+    if waveforms is not None:
+        from camring.interfaces.waveform_file import write_waveforms
+
+        written = write_waveforms(waveforms, file.system, found.cycles, source=file.text)
+        typer.echo(f"Wrote {written}.", err=True)
+    if json:
+        typer.echo(document(found))
+    else:
+        print_table(found)
+    if found.outcome.failure:
+        raise typer.Exit(FAILED)
