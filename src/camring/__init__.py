@@ -11,21 +11,21 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from camring.interfaces.compiled import simulate, summarise, waveforms
     from camring.interfaces.config import MotorFile, read_motor_file
     from camring.interfaces.errors import InputError
     from camring.interfaces.optimisation import optimise, resume
     from camring.interfaces.study import Study, open_study
-    from camring.metrics.summary import Metrics, summarise
+    from camring.metrics.summary import Metrics
     from camring.objective.constraints import Constraints
     from camring.objective.design_space import DesignSpace
     from camring.objective.objective import Goal, evaluate
     from camring.objective.terms import Weights
-    from camring.physics.cycle import Cycle, simulate
+    from camring.physics.cycle import Cycle
     from camring.physics.motor import Motor
     from camring.physics.operating_point import OperatingPoint
     from camring.physics.resolution import Resolution
     from camring.physics.system import System
-    from camring.physics.waveforms import waveforms
 
 __version__ = "0.1.0"
 
@@ -48,9 +48,9 @@ _HOMES = {
     "optimise": "camring.interfaces.optimisation",
     "read_motor_file": "camring.interfaces.config",
     "resume": "camring.interfaces.optimisation",
-    "simulate": "camring.physics.cycle",
-    "summarise": "camring.metrics.summary",
-    "waveforms": "camring.physics.waveforms",
+    "simulate": "camring.interfaces.compiled",
+    "summarise": "camring.interfaces.compiled",
+    "waveforms": "camring.interfaces.compiled",
 }
 
 __all__ = [

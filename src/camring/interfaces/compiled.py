@@ -8,14 +8,18 @@ of motors with the same counts.
 import equinox as eqx
 import jax.numpy as jnp
 
-from camring.metrics.summary import summarise
+from camring.metrics import summary
 from camring.objective.objective import Assessment, Goal, judge
-from camring.physics.cycle import Cycle, simulate
+from camring.physics import cycle
+from camring.physics import waveforms as sampling
+from camring.physics.cycle import Cycle
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
-simulate_compiled = eqx.filter_jit(simulate)
-summarise_compiled = eqx.filter_jit(summarise)
+# The names under which `import camring` offers them.
+simulate = simulate_compiled = eqx.filter_jit(cycle.simulate)
+summarise = summarise_compiled = eqx.filter_jit(summary.summarise)
+waveforms = eqx.filter_jit(sampling.waveforms)
 _judge = eqx.filter_jit(judge)
 
 
@@ -31,5 +35,5 @@ def cycles(system: System, resolution: Resolution | None = None) -> tuple[Cycle,
 def assess(system: System, goal: Goal, resolution: Resolution | None = None) -> Assessment:
     """`camring.objective.objective.evaluate` from the shared programs; same numbers."""
     found = cycles(system, resolution)
-    metrics = tuple(summarise_compiled(cycle, goal.harmonics) for cycle in found)
-    return _judge(system, goal, metrics, jnp.stack([cycle.verdict.code for cycle in found]))
+    metrics = tuple(summarise_compiled(each, goal.harmonics) for each in found)
+    return _judge(system, goal, metrics, jnp.stack([each.verdict.code for each in found]))

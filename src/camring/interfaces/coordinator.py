@@ -135,14 +135,17 @@ def leave_one_out(memory: Any) -> dict[str, Any] | None:
     `errors` (root mean square over the spread of the objective) and `rho` by name
     of the surrogate, and which is `used`; None while there is no surrogate.
     """
-    if not isinstance(memory, Mapping):
+    if isinstance(memory, list):
+        inner = memory
+    elif isinstance(memory, Mapping):
+        inner = list(memory.values())
+    else:
         return None
-    found = memory.get("leave_one_out")
-    if isinstance(found, Mapping):
+    found = memory.get("leave_one_out") if isinstance(memory, Mapping) else None
+    if isinstance(memory, Mapping) and isinstance(found, Mapping):
         return {
             "errors": {name: error for name, (error, _) in found.items()},
             "rho": {name: rho for name, (_, rho) in found.items()},
             "used": memory.get("mean", ""),
         }
-    inner = (leave_one_out(value) for value in memory.values())
-    return next((each for each in inner if each), None)
+    return next((each for each in map(leave_one_out, inner) if each), None)

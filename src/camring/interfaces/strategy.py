@@ -8,7 +8,7 @@ from jaxtyping import Float
 from camring.interfaces.config import MotorFile, missing_design_space
 from camring.interfaces.evaluator import MotorEvaluator
 from camring.objective.theory import theory_designs
-from camring.search.bayesian import BayesianStrategy
+from camring.search.bayesian import Bayesian
 from camring.search.hybrid import Hybrid, Stage
 from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy
@@ -44,11 +44,11 @@ def strategy_for(
     return Hybrid(
         (
             Stage(
-                BayesianStrategy(
+                Bayesian(
                     dimension=space.dimension,
-                    constraint_count=len(motor_file.goal.constraints.names()),
                     approximate=evaluator.approximate,
-                    given=tuple(first),
+                    given=tuple(tuple(map(float, point)) for point in first),
+                    penalty_weight=motor_file.goal.weights.penalty,
                 ),
                 budget - refinement,
             ),

@@ -1,0 +1,205 @@
+"""The whole chain on a real motor: found, validated, reported; killed, and gone on with."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import camring
+from camring.interfaces.record import SAFETY
+from camring.interfaces.validation import Validation
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "wheel_motor.toml"
+CAMRING = [sys.executable, "-c", "from camring.interfaces.cli import main; main()"]
+BUDGET = 28  # four beyond the initial design, so that surrogates are learnt
+
+
+def start(*arguments):
+    return subprocess.Popen(
+        [*CAMRING, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """An uninterrupted run of the command: its folder, and what it printed."""
+    folder = tmp_path_factory.mktemp("optimise") / "wheel_study"
+    process = start("optimise", EXAMPLE, "--out", folder, "--budget", BUDGET, "--json")
+    document, said = process.communicate()
+    assert process.returncode == 0, said
+    return folder, json.loads(document), said
+
+
+def test_the_folder_holds_what_was_promised(finished):
+    folder, _, _ = finished
+    assert {path.name for path in folder.iterdir()} == {
+        ".lock", "given.toml", "study.sqlite", "best.toml", "validation.json", "report.html",
+    }  # fmt: skip
+    assert (folder / "given.toml").read_bytes() == EXAMPLE.read_bytes()
+
+
+def test_the_document_says_what_the_study_holds(finished):
+    folder, document, said = finished
+    study = camring.open_study(folder)
+    assert document["evaluations"] == len(study.records) == BUDGET
+    assert document["stopped"] == study.stopped
+    assert document["best"]["trial"] == study.best.trial
+    assert document["best"]["objective"] < document["given"]["objective"]
+    assert document["validated"] is True
+    assert set(document["leave_one_out"]["errors"]) == {"plain", "rho = 1", "fitted rho"}
+    assert "Torque ripple" in said
+    assert str(folder / "report.html") in said
+    assert "Traceback" not in said
+
+
+def test_the_given_motor_comes_first_and_is_judged_as_it_stands(finished):
+    folder, _, _ = finished
+    study = camring.open_study(folder)
+    given = camring.evaluate(study.given.system, study.given.goal)
+    np.testing.assert_allclose(
+        study.records[0].outcome.objective, float(given.objective), rtol=1e-9
+    )
+
+
+def test_best_toml_is_a_complete_motor_file_of_the_best_design(finished):
+    folder, document, _ = finished
+    best = camring.read_motor_file(folder / "best.toml")
+    assessment = camring.evaluate(best.system, best.goal)
+    np.testing.assert_allclose(
+        float(assessment.objective), document["best"]["objective"], rtol=1e-6
+    )
+    for name, value in document["best"]["constraints"].items():
+        np.testing.assert_allclose(float(assessment.constraints[name]), value, atol=1e-6)
+
+
+def test_every_claim_is_restated_by_both_other_eyes(finished):
+    folder, document, _ = finished
+    validation = Validation.from_json((folder / "validation.json").read_text())
+    assert validation.validated
+    assert validation.trial == document["best"]["trial"]
+    for eye in ("search", "finer", "independent"):
+        view = validation.views["best"][eye]
+        assert set(view["constraints"]) == set(document["best"]["constraints"])
+        assert max(view["constraints"].values()) <= 0
+        assert view["objective"] < validation.views["given"][eye]["objective"]
+    assert all(check.passed for check in validation.checks)
+
+
+def test_weights_can_be_changed_without_simulating(finished):
+    folder, _, _ = finished
+    study = camring.open_study(folder)
+    again = study.objectives(study.given.goal.weights)
+    stored = [record.outcome.physical_objective for record in study.records]
+    np.testing.assert_allclose(again, stored, rtol=1e-12)
+    other = camring.Weights(torque_ripple=0.0, efficiency=3.0)
+    changed = study.objectives(other)
+    goal = camring.Goal(other, study.given.goal.constraints, study.given.goal.harmonics)
+    simulated = camring.evaluate(study.given.system, goal)
+    np.testing.assert_allclose(changed[0], float(simulated.physical_objective), rtol=1e-9)
+
+
+def test_the_search_keeps_away_from_its_limits(finished):
+    folder, _, _ = finished
+    best = camring.open_study(folder).best
+    assert max(best.outcome.constraints.values()) <= -SAFETY
+
+
+def bits(folder):
+    study = camring.open_study(folder)
+    return [
+        (record.trial, record.phase, record.point.tobytes(), repr(record.outcome))
+        for record in study.records
+    ], study.memory
+
+
+def wait_for(folder, count, process, patience=300):
+    deadline = time.monotonic() + patience
+    while time.monotonic() < deadline:
+        if (folder / "study.sqlite").exists() and len(camring.open_study(folder).records) >= count:
+            return
+        assert process.poll() is None, process.stderr.read()
+        time.sleep(0.05)
+    raise AssertionError(f"no {count} evaluations within {patience} s")
+
+
+def test_a_killed_and_interrupted_study_ends_with_the_same_bits(tmp_path, finished):
+    whole, document, _ = finished
+    folder = tmp_path / "study"
+    arguments = ["optimise", EXAMPLE, "--out", folder, "--budget", BUDGET]
+    for count in (1, BUDGET - 2):
+        process = start(*arguments)
+        wait_for(folder, count, process)
+        process.kill()
+        process.communicate()
+        arguments = ["resume", folder]
+    # Ctrl-C while programs are loaded or compiled, which no Python code can cut short.
+    process = start(*arguments)
+    time.sleep(3.0)
+    began = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    waited = time.monotonic() - began
+    if process.returncode == 130:  # else it was quicker than us
+        assert waited < 1.5
+        assert "Traceback" not in said
+    process = start("resume", folder, "--json")
+    resumed, said = process.communicate()
+    assert process.returncode == 0, said
+    assert bits(folder) == bits(whole)
+    assert (folder / "best.toml").read_bytes() == (whole / "best.toml").read_bytes()
+    assert json.loads(resumed)["best"] == document["best"]
+
+
+def test_ctrl_c_says_how_to_go_on(tmp_path, finished):
+    whole, _, _ = finished
+    folder = tmp_path / "study"
+    shutil.copytree(whole, folder)
+    process = start("resume", folder, "--budget", BUDGET + 100)
+    wait_for(folder, BUDGET + 1, process)
+    began = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert time.monotonic() - began < 1.5
+    count = len(camring.open_study(folder).records)
+    assert f"Stopped with {count} evaluations kept; `camring resume {folder}` goes on." in said
+    assert "Traceback" not in said
+
+
+def test_a_study_without_a_feasible_design_ends_with_exit_code_3(tmp_path):
+    motor = tmp_path / "motor.toml"
+    text = EXAMPLE.read_text()
+    assert "[constraints]" in text
+    lines = [line for line in text.splitlines() if not line.startswith("max_contact_stress")]
+    text = "\n".join(lines).replace("[constraints]", '[constraints]\nmax_contact_stress = "1 MPa"')
+    motor.write_text(text)
+    folder = tmp_path / "study"
+    process = start("optimise", motor, "--out", folder, "--budget", 3, "--no-theory", "--json")
+    document, said = process.communicate()
+    assert process.returncode == 3, said
+    found = json.loads(document)
+    assert found["best"] is None
+    assert found["validated"] is False
+    assert "max_contact_stress" in found["sentence"]
+    assert not (folder / "best.toml").exists()
+    assert (folder / "report.html").exists()
+
+
+@pytest.mark.skipif(os.cpu_count() == 1, reason="a worker and the coordinator share the core")
+def test_a_spawned_process_gives_the_same_design(tmp_path, finished):
+    from camring.interfaces.executors import spawned_processes
+
+    whole, _, _ = finished
+    with spawned_processes(1) as executor:
+        camring.optimise(EXAMPLE, tmp_path / "study", budget=3, executor=executor)
+    ours, theirs = camring.open_study(tmp_path / "study"), camring.open_study(whole)
+    for here, there in zip(ours.records, theirs.records, strict=False):
+        assert here.point.tobytes() == there.point.tobytes()
+        np.testing.assert_allclose(here.outcome.objective, there.outcome.objective, rtol=1e-12)
