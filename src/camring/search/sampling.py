@@ -31,7 +31,7 @@ def sobol(
 
 
 def initial_point(
-    trial: int, dimension: int, seed: int, given: Sequence[Float[np.ndarray, " dimension"]] = ()
+    trial: int, dimension: int, seed: int, given: Sequence[Sequence[float]] = ()
 ) -> Float[np.ndarray, " dimension"]:
     """Point number `trial` of the initial design: the given ones first, then Sobol's."""
     if trial < len(given):
