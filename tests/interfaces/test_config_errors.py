@@ -177,7 +177,7 @@ FAULTS = {
     "harmonics beyond reason": (added("[objective]", "harmonics = 10000000"), ["harmonics"]),
     "negative weight": (with_line("torque_ripple = -1"), ["objective.torque_ripple"]),
     "no aim": (
-        SOUND.replace("torque_ripple = 10", "torque_ripple = 0")
+        SOUND.replace("torque_ripple = 100", "torque_ripple = 0")
         .replace("pressure_ripple = 0.02", "pressure_ripple = 0")
         .replace("efficiency = 1", "efficiency = 0")
         .replace("spectrum = 1", "spectrum = 0")

@@ -24,7 +24,7 @@ from camring.physics.contact import hertz_stress, normal_force
 from camring.physics.system import System
 
 HELD = 0.01  # of the range of control values: what a space may miss of a cam it "holds"
-PRE_COMPRESSION = (0.5, 0.0, 1.0)  # shares of the full angle
+PRE_COMPRESSION = (1.0, 0.5, 0.0)  # shares of the full angle
 _FAITHFUL = 1e-3  # pull towards the given timing where edges leave a choice
 
 
@@ -54,29 +54,32 @@ def theory_designs(
     Unit points, possibly none: the space may hold no zero-ripple cam (too few
     modes, amplitudes too small), or the counts may allow none.
     """
-    cams = _cam_points(system, space, limits or Limits())
+    cams, within = _cam_points(system, space, limits or Limits())
     timings = _timing_points(system, space)
-    # By the sum of ranks: the best cam with the best timing, then its neighbours.
+    # Cams within the limits first; then by the sum of ranks: the best cam with the best
+    # timing, then its neighbours.
     pairs = sorted(
-        ((i + j, i, j) for i in range(len(cams)) for j in range(len(timings))),
+        (not within[i], i + j, i, j) for i in range(len(cams)) for j in range(len(timings))
     )
     designs: list[np.ndarray] = []
-    for _, i, j in pairs:
+    for _, _, i, j in pairs:
         design = np.concatenate([timings[j], cams[i]])
         if all(np.max(np.abs(design - each), initial=0) > 1e-6 for each in designs):
             designs.append(design)
     return np.array(designs[:most]).reshape(-1, space.dimension)
 
 
-def _cam_points(system: System, space: DesignSpace, limits: Any) -> list[np.ndarray]:
-    """Coordinates of the zero-ripple cams that the space holds, best first."""
+def _cam_points(
+    system: System, space: DesignSpace, limits: Any
+) -> tuple[list[np.ndarray], list[bool]]:
+    """Coordinates of the zero-ripple cams that the space holds, best first; within limits?"""
     if space.cam is None:
-        return [np.zeros(0)]
+        return [np.zeros(0)], [True]
     motor, modes = system.motor, space.cam
     given = np.asarray(control_values(motor.cam))
     count = modes.count // modes.lobes
     if count * modes.lobes != modes.count:
-        return []
+        return [], []
     first = np.sum(given * np.exp(-2j * pi * modes.lobes * np.arange(len(given)) / len(given)))
     turned = round(np.angle(-first) / (-2 * pi) * count)  # control values to the dead centre
     points = []
@@ -86,7 +89,7 @@ def _cam_points(system: System, space: DesignSpace, limits: Any) -> list[np.ndar
         if missed < HELD and np.all((point >= 0) & (point <= 1)):
             points.append(point)
     if not points:
-        return []
+        return [], []
     facts = jax.jit(jax.vmap(lambda point: _cam_facts(system, modes.apply(motor.cam, point))))
     undercut, angle, stress = (np.asarray(each) for each in facts(jnp.array(points)))
     broken = (
@@ -96,7 +99,7 @@ def _cam_points(system: System, space: DesignSpace, limits: Any) -> list[np.ndar
     )
     # Among cams within the limits the one with most undercut margin comes first.
     order = np.lexsort((-undercut, np.round(broken, 9)))
-    return [points[place] for place in order]
+    return [points[place] for place in order], [bool(broken[place] < 1e-9) for place in order]
 
 
 def _excess(value: np.ndarray, limit: float | None, sign: int = 1) -> np.ndarray:
