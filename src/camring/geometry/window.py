@@ -118,7 +118,7 @@ def _shoulders(width: Width, ramp: Array) -> Q[Float[Array, " edge"], "rad"]:
 def lens_share(overlap: Q[Float[Array, "*grid"], "1"]) -> Q[Float[Array, "*grid"], "1"]:
     """Area common to two equal circles over that of one; `overlap` over a diameter, in [0, 1]."""
     half_angle = 2 * jnp.arcsin(jnp.sqrt(overlap / 2))
-    return (2 * half_angle - jnp.sin(2 * half_angle)) / pi
+    return jnp.minimum((2 * half_angle - jnp.sin(2 * half_angle)) / pi, 1.0)
 
 
 @lens_share.defjvp
@@ -131,10 +131,10 @@ def _lens_share_slope(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
 def lens_overlap(share: Q[Float[Array, ""], "1"]) -> Q[Float[Array, ""], "1"]:
     """The overlap at which a lens has this share of a circle: inverse of `lens_share`.
 
-    Newton on the central angle, whose equation `t - sin t = 2 pi share` is
+    Newton on the central angle, whose equation `t - sin t = pi share` is
     Kepler's with eccentricity one; `share` within [0, 1].
     """
-    mean = 2 * pi * jnp.clip(share, 0.0, 1.0)
+    mean = pi * jnp.clip(share, 0.0, 1.0)
     angle = jnp.minimum(jnp.cbrt(6 * mean), pi)
     for _ in range(12):
         slope = 1 - jnp.cos(angle)

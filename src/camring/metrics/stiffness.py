@@ -22,9 +22,8 @@ class Oscillator(eqx.Module):
 
 def oscillator(cycle: Cycle, mean_volume: Q[Float[Array, ""], "m3"]) -> Oscillator:
     """`kf = beta Ap^2 / mean V`, its frequency with the piston's mass, and the damping ratio."""
-    motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
-    modulus = fluid.bulk_modulus_at((point.supply_pressure + point.return_pressure) / 2)
-    stiffness = modulus * motor.piston.area**2 / mean_volume
+    motor, fluid = cycle.motor, cycle.fluid
+    stiffness = fluid.bulk_modulus * motor.piston.area**2 / mean_volume
     damping = motor.viscous_damping(fluid)
     return Oscillator(
         stiffness,

@@ -144,6 +144,9 @@ class AeratedFluid(AbstractFluid):
     ) -> Q[Float[Array, "*grid"], "W"]:
         return jnp.zeros_like(pressure)
 
+    def kinks(self) -> tuple[Q[Float[Array, ""], "Pa"], ...]:
+        return self.atmospheric_pressure, self.dissolution_pressure
+
     def state(self, pressure: Pressure) -> Float[Array, "*grid"]:
         has_air = self.air_fraction > 0
         held = jnp.where(has_air, pressure, self.atmospheric_pressure)

@@ -36,6 +36,8 @@ class AbstractFluid(eqx.Module):
 
     density: eqx.AbstractVar[Q[Float[Array, ""], "kg/m3"]]
     """Density of the liquid at atmospheric pressure."""
+    bulk_modulus: eqx.AbstractVar[Q[Float[Array, ""], "Pa"]]
+    """Of the liquid at atmospheric pressure."""
     vapour_pressure: eqx.AbstractVar[Q[Float[Array, ""], "Pa"]]
     transition_pressure: eqx.AbstractVar[Q[Float[Array, ""], "Pa"]]
     viscosity: eqx.AbstractVar[Q[Float[Array, ""], "m2/s"]]
@@ -72,6 +74,10 @@ class AbstractFluid(eqx.Module):
         pressure_rate: Q[Float[Array, "*grid"], "Pa/s"],
     ) -> Q[Float[Array, "*grid"], "W"]:
         """Power the balance of this law leaves in compressing the chamber's oil."""
+
+    @abstractmethod
+    def kinks(self) -> tuple[Q[Float[Array, ""], "Pa"], ...]:
+        """Pressures at which the law bends: `content_slope` is not smooth there."""
 
     @abstractmethod
     def state(self, pressure: Pressure) -> Float[Array, "*grid"]:
@@ -125,6 +131,9 @@ class ConstantFluid(AbstractFluid):
         pressure_rate: Q[Float[Array, "*grid"], "Pa/s"],
     ) -> Q[Float[Array, "*grid"], "W"]:
         return (pressure - return_pressure) * volume / self.bulk_modulus * pressure_rate
+
+    def kinks(self) -> tuple[Q[Float[Array, ""], "Pa"], ...]:
+        return ()
 
     def state(self, pressure: Pressure) -> Float[Array, "*grid"]:
         return pressure

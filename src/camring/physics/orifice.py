@@ -15,6 +15,11 @@ from camring.physics.fluid import AbstractFluid
 class AbstractOrifice(eqx.Module):
     """A law for the volume flow that a pressure drop drives through an area."""
 
+    @property
+    @abstractmethod
+    def bends_at_zero(self) -> bool:
+        """Whether flow against pressure drop has a jump of curvature where the drop is zero."""
+
     @abstractmethod
     def __call__(
         self,
@@ -41,6 +46,10 @@ class TurbulentOrifice(AbstractOrifice):
     """
 
     discharge_coefficient: Q[Float[Array, ""], "1"] = eqx.field(converter=real)
+
+    @property
+    def bends_at_zero(self) -> bool:
+        return False
 
     def __call__(
         self,
@@ -70,6 +79,10 @@ class LaminarTurbulentOrifice(AbstractOrifice):
 
     discharge_coefficient: Q[Float[Array, ""], "1"] = eqx.field(converter=real)
     critical_flow_number: Q[Float[Array, ""], "1"] = eqx.field(converter=real, default=1000.0)
+
+    @property
+    def bends_at_zero(self) -> bool:
+        return True
 
     def __call__(
         self,
