@@ -38,7 +38,9 @@ def crank_torque(setting, friction):
     area = pi * BORE**2 / 4
     stroke = setting * CUBIC_INCH / (PISTONS * area)
     phase = 2 * pi * np.arange(64) / 64
-    cam = RadialCam(CRANK + stroke * sine(phase), repeats=1)
+    # A spline through control values on a cosine swings by (2 + cos h)/3 of theirs.
+    swing = stroke * 3 / (2 + np.cos(phase[1]))
+    cam = RadialCam(CRANK + swing * sine(phase), repeats=1)
     angle = jnp.asarray(2 * pi * (np.arange(720) + 0.5) / 720)
     radius = cam.pitch_radius(angle)
     force = jnp.where(radius.first > 0, area * BAR, 0.0)

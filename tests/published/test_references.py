@@ -3,11 +3,18 @@
 The independent solver is tested first, then the product by the 1e-5 it promises.
 """
 
+import dataclasses
+
 import numpy as np
 import pytest
-from reference_files import reference_machines, reference_results
+from both_roads import records, run_all
+from motors import Case
+from reference_files import DATA, reference_machines, reference_results
+from scipy.integrate import solve_ivp
 
-from camring.metrics.independent import solve_machine
+from camring.interfaces.config import read_motor_file
+from camring.metrics.independent import machine_of, solve_machine
+from camring.metrics.independent.orbit import periodic_orbit
 
 MOTORS = ("mid", "wheel_motor", "winch_motor", "mill_motor", "mid_aerated")
 
@@ -46,10 +53,6 @@ def test_the_independent_power_balance_closes(name):
 
 def test_lsoda_and_radau_find_the_same_orbit():
     """The stiff solver under the independent road is not taken on trust either."""
-    from scipy.integrate import solve_ivp
-
-    from camring.metrics.independent.orbit import periodic_orbit
-
     machine = reference_machines("mid")[0]
     orbit = periodic_orbit(machine, 1e-9)
     chamber = orbit.chamber
@@ -68,3 +71,35 @@ def test_lsoda_and_radau_find_the_same_orbit():
         pressure = float(chamber.pressure(step.y[0, -1], shift))
         expected = float(orbit.pressure(np.array([end - 1e-13]))[0])
         assert abs(pressure - expected) < 1e-8 * chamber.scale
+
+
+@pytest.mark.parametrize("name", MOTORS)
+def test_the_product_meets_the_references(name):
+    """1e-5 relative on each result, read from the same file that the commands read."""
+    system = read_motor_file(DATA / f"{name}.toml").system
+    motor = dataclasses.replace(system.motor, name="")  # a name would cost a compilation
+    cases = [Case(motor, system.fluid, point) for point in system.operating_points]
+    cycles, metrics = run_all(cases)
+    assert np.all(np.asarray(cycles.verdict.code) == 0)
+    for found, expected in zip(records(metrics), reference_results(name), strict=True):
+        for result, value in expected.items():
+            assert found[result] == pytest.approx(value, rel=1e-5, abs=1e-12), result
+
+
+@pytest.mark.parametrize("name", MOTORS)
+def test_both_readers_of_a_reference_file_agree(name):
+    """The tests' own few lines of TOML and the product's reader give the same machine."""
+    system = read_motor_file(DATA / f"{name}.toml").system
+    for machine, point in zip(reference_machines(name), system.operating_points, strict=True):
+        other = machine_of(system.motor, system.fluid, point)
+        for field in dataclasses.fields(machine):
+            one, two = getattr(machine, field.name), getattr(other, field.name)
+            if dataclasses.is_dataclass(one):
+                one, two = dataclasses.astuple(one), dataclasses.astuple(two)
+            if isinstance(one, str):
+                assert one == two, field.name
+            elif isinstance(one, tuple):
+                for a, b in zip(one, two, strict=True):
+                    assert a == b if isinstance(a, str | tuple) else a == pytest.approx(b)
+            else:
+                np.testing.assert_allclose(one, two, rtol=1e-12, err_msg=field.name)
