@@ -1,0 +1,157 @@
+"""The pressure equation of one chamber on the second road, cut where it has kinks."""
+
+from collections.abc import Callable
+from math import expm1, log, pi
+
+import numpy as np
+
+from camring.metrics.independent.laws import OilLaw, opening, opening_kinks, orifice
+from camring.metrics.independent.machine import Machine, Window
+from camring.metrics.independent.shape import Piece, PitchCurve
+
+
+class Chamber:
+    """Right-hand side dP/dtheta, cut into stretches without kinks."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.curve = PitchCurve(machine)
+        self.oil = OilLaw(machine.oil)
+        self.orifice = orifice(machine)
+        self.supply_opening = opening(machine.supply)
+        self.return_opening = opening(machine.return_)
+        self.pitch = 2 * pi / machine.lobes
+        self.scale = abs(machine.supply_pressure - machine.return_pressure)
+        self.pieces = self.curve.pieces()
+        self.reference = self._reference()
+        self.start = machine.supply.centre % machine.period
+        self.edges = self._edges()
+
+    def _reference(self) -> float:
+        given = self.machine.reference_radius
+        if not isinstance(given, str):
+            return float(given)
+        if given == "minimum":
+            return self.extreme_radii()[0]
+        nodes, weights = np.polynomial.legendre.leggauss(12)
+        total = 0.0
+        for piece in self.pieces:
+            half = (piece.end - piece.start) / 2
+            total += half * float(weights @ self.curve.jet(piece.start + half * (1 + nodes))[0])
+        return total / self.curve.period
+
+    def extreme_radii(self) -> tuple[float, float]:
+        at = np.concatenate([self.curve.turning_points(), [p.start for p in self.pieces]])
+        radii = self.curve.jet(at)[0]
+        return float(radii.min()), float(radii.max())
+
+    def _edges(self) -> np.ndarray:
+        """Kinks of one orbit from its start, both ends included."""
+        period = self.curve.period
+        around = [p.start for p in self.pieces]
+        for window in (self.machine.supply, self.machine.return_):
+            for kink in opening_kinks(window):
+                around += [
+                    window.centre + kink + self.pitch * k
+                    for k in range(self.machine.lobes // self.machine.repeats)
+                ]
+        inside = np.sort((np.asarray(around) - self.start) % period)
+        all_edges = np.concatenate([[0.0], inside, [period]])
+        keep = np.concatenate([[True], np.diff(all_edges) > 1e-13 * period])
+        all_edges = all_edges[keep]
+        all_edges[-1] = period
+        return self.start + all_edges
+
+    def nearest_centre(self, window: Window, angle: float) -> float:
+        return window.centre + self.pitch * round((angle - window.centre) / self.pitch)
+
+    def piece_at(self, angle: float) -> tuple[Piece, float]:
+        """The cam's polynomial at an angle and the turns to take off it."""
+        turns = np.floor((angle - self.pieces[0].start) / self.curve.period) * self.curve.period
+        home = angle - turns
+        starts = [p.start for p in self.pieces]
+        return self.pieces[max(int(np.searchsorted(starts, home, side="right")) - 1, 0)], turns
+
+    def slopes(
+        self, start: float, end: float, shift: float
+    ) -> Callable[[float, float], tuple[float, float]]:
+        """(y, theta) -> (dy/dtheta, P) on a stretch without kinks.
+
+        `P = shift + scale y`, or `P = shift e^y` for oil with air in it.
+        """
+        m, middle = self.machine, (start + end) / 2
+        piece, turns = self.piece_at(middle)
+        origin, scale, powers = piece.origin + turns, piece.scale, piece.coefficients[::-1]
+        area, fixed = m.piston_area, m.dead_volume - m.piston_area * self.reference
+        supply_at = self.nearest_centre(m.supply, middle)
+        return_at = self.nearest_centre(m.return_, middle)
+        supply_open, return_open = self.supply_opening, self.return_opening
+        flow, port, speed, leak = self.orifice, m.port_area, m.shaft_speed, m.leakage_coefficient
+        to_supply, to_return = m.supply_pressure - shift, m.return_pressure - shift
+        density, modulus, unit, case = (
+            m.oil.density,
+            m.oil.bulk_modulus,
+            self.scale,
+            m.case_pressure,
+        )
+
+        def motion(angle: float) -> tuple[float, float]:
+            x = (angle - origin) * scale
+            value = slope = 0.0
+            for power in powers:
+                slope = slope * x + value
+                value = value * x + power
+            return fixed + area * value, area * slope * scale
+
+        def stiff(y: float, angle: float) -> tuple[float, float]:
+            volume, swept = motion(angle)
+            above = unit * y
+            pressure = shift + above
+            net = -leak * (pressure - case) / speed - swept
+            share = supply_open(angle - supply_at)
+            if share > 0:
+                net += flow(port * share, to_supply - above, density) / speed
+            share = return_open(angle - return_at)
+            if share > 0:
+                net += flow(port * share, to_return - above, density) / speed
+            return modulus * net / (volume * unit), pressure
+
+        rho, rho_slope = self.oil.density, self.oil.density_slope
+        rho_supply, rho_return = rho(m.supply_pressure), rho(m.return_pressure)
+        rho_case = rho(case)
+
+        logarithmic = self.oil.logarithmic
+
+        def aerated(y: float, angle: float) -> tuple[float, float]:
+            volume, swept = motion(angle)
+            above = shift * expm1(y) if logarithmic else unit * y
+            pressure = shift + above
+            here = rho(pressure)
+            net = -(here + rho_case) / 2 * leak * (pressure - case) / speed - here * swept
+            share = supply_open(angle - supply_at)
+            if share > 0:
+                mean = (here + rho_supply) / 2
+                net += mean * flow(port * share, to_supply - above, mean) / speed
+            share = return_open(angle - return_at)
+            if share > 0:
+                mean = (here + rho_return) / 2
+                net += mean * flow(port * share, to_return - above, mean) / speed
+            size = pressure if logarithmic else unit
+            return net / (volume * rho_slope(pressure) * size), pressure
+
+        return aerated if self.oil.aerated else stiff
+
+    def state(self, pressure: float, shift: float) -> float:
+        return log(pressure / shift) if self.oil.logarithmic else (pressure - shift) / self.scale
+
+    def pressure(self, state: np.ndarray, shift: np.ndarray) -> np.ndarray:
+        return shift * np.exp(state) if self.oil.logarithmic else shift + self.scale * state
+
+    def shift_at(self, start: float, end: float) -> float:
+        """Pressure of the wider open port on a stretch."""
+        m = self.machine
+        share = [
+            max(shape(at - self.nearest_centre(w, (start + end) / 2)) for at in (start, end))
+            for w, shape in ((m.supply, self.supply_opening), (m.return_, self.return_opening))
+        ]
+        return m.supply_pressure if share[0] > share[1] else m.return_pressure
