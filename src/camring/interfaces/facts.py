@@ -104,8 +104,7 @@ def _rows(found: Simulated) -> tuple[Constraint, ...]:
     numbers = SimpleNamespace(
         results=[SimpleNamespace(metrics=each) for each in found.outcome.results]
     )
-    file = found.file
-    return constraints_of(file.goal.constraints, [file.system], [cast(Design, numbers)])
+    return constraints_of([found], [cast(Design, numbers)])
 
 
 def document(found: Simulated) -> str:
