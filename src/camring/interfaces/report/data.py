@@ -240,6 +240,7 @@ class ReportData:
     variables: tuple[Variable, ...] = ()
     search: Search | None = None
     sensitivities: tuple[Sensitivity, ...] = ()
+    warnings: tuple[str, ...] = ()
 
     @property
     def is_study(self) -> bool:

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from camring.interfaces.config import MotorFile, parse_motor_file, read_motor_file
+from camring.interfaces.config.document import printable
+from camring.interfaces.errors import InputError
 from camring.interfaces.record import Record, best_of
 from camring.interfaces.report.coordinates import coordinates_of, variables_of
 from camring.interfaces.report.data import Design, ReportData, Verdict
@@ -17,6 +19,7 @@ from camring.interfaces.report.sensitivity import sensitivities_of
 from camring.interfaces.report.simulation import design_of
 from camring.interfaces.report.trials import search_of, starting_note
 from camring.interfaces.report.verdicts import read_verdict
+from camring.interfaces.simulated import Simulated, simulated
 from camring.interfaces.study_folder import StudyFolder
 
 __all__ = ["gather", "gather_comparison", "gather_single"]
@@ -41,10 +44,10 @@ def gather(folder: str | Path) -> ReportData:
     given = read_motor_file(study.given_path)
     best_record = best_of(records)
     best = _best_motor(study, given, best_record)
-    files = [given] if best is None else [given, best]
+    # The validation has looked at the errors already, finer and with another solver.
+    found = [simulated(each, estimate=False) for each in (given, best) if each is not None]
     designs = tuple(
-        design_of(label, file.system, harmonics=file.goal.harmonics)
-        for label, file in zip(("given", "best"), files, strict=False)
+        design_of(label, each) for label, each in zip(("given", "best"), found, strict=False)
     )
     system = given.system
     weights = [float(point.weight) for point in system.operating_points]
@@ -57,7 +60,8 @@ def gather(folder: str | Path) -> ReportData:
         subtitle=_subtitle(designs[-1]),
         designs=designs,
         verdict=_verdict(study, best, weights),
-        constraints=constraints_of(given.goal.constraints, [f.system for f in files], designs),
+        constraints=constraints_of(found, designs),
+        warnings=_warnings(found[-1:], designs[-1:]),
         variables=variables_of(given, points) if len(points) == len(designs) else (),
         search=search_of(
             records,
@@ -81,31 +85,73 @@ def gather(folder: str | Path) -> ReportData:
 
 def gather_single(motor_file: MotorFile) -> ReportData:
     """One motor as it is."""
-    design = design_of("motor", motor_file.system, harmonics=motor_file.goal.harmonics)
+    found = simulated(motor_file)
+    design = design_of("motor", found)
     return ReportData(
         title=_title(motor_file),
         subtitle=_subtitle(design),
         designs=(design,),
-        constraints=constraints_of(motor_file.goal.constraints, [motor_file.system], [design]),
+        constraints=constraints_of([found], [design]),
+        warnings=tuple(found.warnings()),
         provenance=provenance_of(motor_file.path.name, motor_file.text),
     )
 
 
 def gather_comparison(motor_files: Sequence[MotorFile]) -> ReportData:
-    """Several motors side by side, named by their files; limits are those of the last."""
+    """Several motors side by side, named by their files; limits are those of the first.
+
+    They need as many operating points each, for these stand side by side too.
+
+    Raises
+    ------
+    InputError
+        When there are fewer than two motors, or their operating points differ in number.
+    """
+    _require_comparable(motor_files)
+    found = [simulated(file, estimate=False) for file in motor_files]
     designs = tuple(
-        design_of(file.path.stem, file.system, harmonics=file.goal.harmonics)
-        for file in motor_files
+        design_of(label, each) for label, each in zip(_labels(motor_files), found, strict=True)
     )
-    last = motor_files[-1]
+    first = motor_files[0]
     return ReportData(
         title=" · ".join(design.label for design in designs),
         subtitle=f"{len(designs)} motors side by side",
         designs=designs,
-        constraints=constraints_of(
-            last.goal.constraints, [file.system for file in motor_files], designs
-        ),
-        provenance=provenance_of(last.path.name, last.text),
+        constraints=constraints_of(found, designs),
+        warnings=_warnings(found, designs),
+        provenance=provenance_of(first.path.name, first.text),
+    )
+
+
+def _require_comparable(motor_files: Sequence[MotorFile]) -> None:
+    if len(motor_files) < 2:
+        raise InputError("a comparison", "needs at least two motor files", "name another one")
+    counts = [len(file.system.operating_points) for file in motor_files]
+    for file, count in zip(motor_files, counts, strict=True):
+        if count != counts[0]:
+            raise InputError(
+                printable(file.path),
+                f"has {count} operating points, but {printable(motor_files[0].path)} has "
+                f"{counts[0]}",
+                "give both files the same operating points",
+            )
+
+
+def _labels(motor_files: Sequence[MotorFile]) -> list[str]:
+    """The files' names without ending, numbered where two are the same."""
+    stems = [file.path.stem.replace("_", " ") for file in motor_files]
+    return [
+        stem if stems.count(stem) == 1 else f"{stem} {place + 1}"
+        for place, stem in enumerate(stems)
+    ]
+
+
+def _warnings(found: Sequence[Simulated], designs: Sequence[Design]) -> tuple[str, ...]:
+    """What the reader should know, with the design's name in front."""
+    return tuple(
+        f"{design.label.capitalize()}: {sentence}"
+        for each, design in zip(found, designs, strict=True)
+        for sentence in each.warnings()
     )
 
 

@@ -21,6 +21,7 @@ def head(data: ReportData) -> str:
         element("h1", escape(data.title)),
         element("p", escape(data.subtitle), class_="subtitle"),
         _verdict(data),
+        _warnings(data),
         _keys(data),
     )
 
@@ -36,6 +37,15 @@ def _verdict(data: ReportData) -> str:
         element("span", escape(data.verdict.sentence)),
         class_=f"verdict {'yes' if good else 'no'}",
         role="note",
+    )
+
+
+def _warnings(data: ReportData) -> str:
+    if not data.warnings:
+        return ""
+    lines = [element("li", escape(sentence)) for sentence in data.warnings]
+    return element(
+        "div", element("strong", "⚠ Look at this"), element("ul", *lines), class_="verdict warn"
     )
 
 

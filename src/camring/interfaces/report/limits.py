@@ -5,14 +5,12 @@ from dataclasses import dataclass
 
 from camring.interfaces.report.data import Constraint, Design
 from camring.interfaces.report.quantities import QUANTITIES, Quantity, significant
-from camring.metrics.summary import Metrics
-from camring.numerics.quantity import real
+from camring.interfaces.simulated import Simulated
 from camring.objective.constraints import (
     BANDS,
     LOWER_LIMITS,
     UPPER_LIMITS,
     Constraints,
-    violations,
 )
 from camring.physics.system import System
 
@@ -53,25 +51,20 @@ def _limits(constraints: Constraints, system: System) -> dict[str, _Limit]:
     return found
 
 
-def constraints_of(
-    constraints: Constraints, systems: Sequence[System], designs: Sequence[Design]
-) -> tuple[Constraint, ...]:
-    """Each limit with value and margin of every design, the worst over the operating points.
+def constraints_of(found: Sequence[Simulated], designs: Sequence[Design]) -> tuple[Constraint, ...]:
+    """Each limit of the first motor's file with value and margin of every design.
+
+    Values are the worst over the operating points. A limit that only some of the
+    files set has no margin in the others.
 
     Parameters
     ----------
-    systems
-        One for each design, in the same order.
+    found
+        The simulations behind the designs, in the same order.
     """
-    margins = [
-        {
-            name: -float(violation)
-            for name, violation in violations(constraints, system, _metrics(design)).items()
-        }
-        for system, design in zip(systems, designs, strict=True)
-    ]
+    file = found[0].file
     rows = []
-    for name, limit in _limits(constraints, systems[-1]).items():
+    for name, limit in _limits(file.goal.constraints, file.system).items():
         quantity = QUANTITIES.get(limit.result) or Quantity(limit.result, "", "", 1.0)
         pick = max if limit.upper else min
         worst = [pick(r.metrics[limit.result] for r in design.results) for design in designs]
@@ -81,7 +74,7 @@ def constraints_of(
                 name,
                 f"{sense} {quantity.value(limit.bound):.4g} {quantity.unit}".rstrip(),
                 tuple(_written(quantity, value) for value in worst),
-                tuple(found[name] for found in margins),
+                tuple(-each.outcome.constraints.get(name, float("nan")) for each in found),
                 limit.bound,
             )
         )
@@ -90,11 +83,3 @@ def constraints_of(
 
 def _written(quantity: Quantity, value: float) -> str:
     return f"{significant(quantity.value(value), 4)} {quantity.unit}".rstrip()
-
-
-def _metrics(design: Design) -> tuple[Metrics, ...]:
-    """The results as the objective room knows them."""
-    return tuple(
-        Metrics(**{name: real(value) for name, value in result.metrics.items()})
-        for result in design.results
-    )

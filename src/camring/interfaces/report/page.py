@@ -145,13 +145,16 @@ def _validation(data: ReportData) -> str:
     if verdict is not None and verdict.views:
         parts.append(tables.view_table(verdict))
     if verdict is not None and verdict.checks:
+        agreement = [check for check in verdict.checks if " results " in check.name]
+        if agreement:
+            parts.append(tables.check_table(agreement, "How far the solvers agree, relative"))
         passed = sum(check.passed for check in verdict.checks)
         told = f"{passed} of {len(verdict.checks)} checks passed"
         parts.append(
             element(
                 "details",
                 element("summary", told),
-                tables.check_table(verdict),
+                tables.check_table(verdict.checks, "All checks"),
                 # What failed is not to be folded away.
                 open=None if passed == len(verdict.checks) else "open",
             )

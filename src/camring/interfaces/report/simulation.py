@@ -8,15 +8,14 @@ import numpy as np
 from jaxtyping import Array
 
 from camring.geometry.contour import pitch_curvature, pressure_angle, undercut_factor
-from camring.interfaces.compiled import cycles, summarise_compiled
+from camring.interfaces.compiled import cycles, summarise_compiled, waveforms
 from camring.interfaces.report.data import Design, Duty, Facts, Profile, Result, Waves
+from camring.interfaces.simulated import Simulated
 from camring.metrics.spectrum import order_spectrum
 from camring.physics.cycle import Cycle
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
-from camring.physics.resolution import Resolution
 from camring.physics.system import System
-from camring.physics.waveforms import waveforms
 
 __all__ = ["design_of", "facts_of", "results_of"]
 
@@ -38,27 +37,16 @@ def facts_of(motor: Motor) -> Facts:
     )
 
 
-def design_of(
-    label: str,
-    system: System,
-    *,
-    harmonics: int = HARMONICS,
-    resolution: Resolution | None = None,
-) -> Design:
-    """One motor simulated at each of its operating points.
-
-    Designs that differ in numbers only share one compilation.
-
-    Parameters
-    ----------
-    harmonics
-        Highest order that a ripple counts; the goal's.
-    """
-    angle = _angles(system.motor)
+def design_of(label: str, found: Simulated) -> Design:
+    """One simulated motor as the report shows it."""
+    motor, harmonics = found.file.system.motor, found.file.goal.harmonics
+    angle = _angles(motor)
+    errors = found.numerical_error if found.errors else (float("nan"),) * len(found.cycles)
     results = tuple(
-        _result(system.motor, cycle, angle, harmonics) for cycle in cycles(system, resolution)
+        _result(cycle, angle, harmonics, error)
+        for cycle, error in zip(found.cycles, errors, strict=True)
     )
-    return Design(label, facts_of(system.motor), _profile(system.motor, angle), results)
+    return Design(label, facts_of(motor), _profile(motor, angle), results)
 
 
 def _angles(motor: Motor) -> np.ndarray:
@@ -85,9 +73,6 @@ def _profile(motor: Motor, angle: np.ndarray) -> Profile:
     )
 
 
-_waveforms = eqx.filter_jit(waveforms)
-
-
 @eqx.filter_jit
 def _torque_by_order(cycle: Cycle, highest_order: int) -> Array:
     return order_spectrum(cycle, highest_order).torque
@@ -103,9 +88,9 @@ def _numbers(cycle: Cycle, harmonics: int) -> dict[str, float]:
     return {name: float(value) for name, value in vars(metrics).items()}
 
 
-def _result(motor: Motor, cycle: Cycle, angle: np.ndarray, harmonics: int) -> Result:
-    plate, inside = motor.valve_plate, _inside(angle)
-    waves = _waveforms(cycle, inside)
+def _result(cycle: Cycle, angle: np.ndarray, harmonics: int, error: float) -> Result:
+    plate, inside = cycle.motor.valve_plate, _inside(angle)
+    waves = waveforms(cycle, inside)
     torque = np.asarray(_torque_by_order(cycle, harmonics))
     return Result(
         duty=_duty(cycle.point),
@@ -116,9 +101,10 @@ def _result(motor: Motor, cycle: Cycle, angle: np.ndarray, harmonics: int) -> Re
             supply_opening=np.asarray(plate.opening(plate.supply, inside)),
             return_opening=np.asarray(plate.opening(plate.return_, inside)),
         ),
-        orders=motor.cam.repeats * np.arange(1, len(torque) + 1),
+        orders=cycle.motor.cam.repeats * np.arange(1, len(torque) + 1),
         torque_amplitudes=torque,
         periodicity_residual=float(cycle.periodicity_residual),
+        numerical_error=error,
     )
 
 

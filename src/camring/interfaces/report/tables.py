@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from camring.interfaces.report.data import (
+    Check,
     Constraint,
     Design,
     ReportData,
@@ -152,7 +153,7 @@ def _place(variable: Variable) -> str:
     return element("span", *ticks, class_="bar", aria_hidden="true")
 
 
-def check_table(verdict: Verdict) -> str:
+def check_table(checks: Sequence[Check], caption: str) -> str:
     """What validation looked at, one line each."""
     rows = [
         _row(
@@ -160,9 +161,9 @@ def check_table(verdict: Verdict) -> str:
             ("passed" if c.passed else "failed", "" if c.passed else "broken"),
             (c.detail, ""),
         )
-        for c in verdict.checks
+        for c in checks
     ]
-    return _table([("Check", ""), ("Outcome", ""), ("Found", "")], rows, "Validation")
+    return _table([("Check", ""), ("Outcome", ""), ("Found", "")], rows, caption)
 
 
 def leave_one_out_table(search: Search) -> str:
