@@ -154,7 +154,9 @@ def _checks(views: Mapping[str, Mapping[str, Outcome]], eye: str) -> list[Check]
     ]
     checks.append(_gain(views, eye))
     for name in (GIVEN, BEST):
-        checks.append(_agreement(views[name][SEARCH], views[name][eye], f"the {name} motor's {by}"))
+        checks.append(
+            _agreement(views[name][SEARCH], views[name][eye], f"of the {name} motor {by}")
+        )
     return checks
 
 
@@ -174,13 +176,15 @@ def _agreement(claimed: Outcome, seen: Outcome, whose: str) -> Check:
     """The largest difference of any result, relative to it or to what it is small beside."""
     largest, where = 0.0, "nothing"
     for before, after in zip(claimed.results, seen.results, strict=True):
-        for name in before.keys() & QUANTITIES.keys():
+        for name in sorted(before.keys() & after.keys() & QUANTITIES.keys()):
             scale = max(abs(after[name]), _smallest_scale(name, after))
             difference = abs(before[name] - after[name]) / scale
-            if not difference <= largest:  # also when it is not a number
+            if math.isnan(difference):
+                difference = math.inf
+            if difference > largest:
                 largest, where = difference, name
     return Check(
-        f"{whose} results", largest <= AGREEMENT, f"largest difference {largest:.1e}, in {where}"
+        f"agreement {whose}", largest <= AGREEMENT, f"largest difference {largest:.1e}, in {where}"
     )
 
 
