@@ -1,5 +1,7 @@
 """The aerated oil against quadrature, its own limits, and the second road."""
 
+from itertools import pairwise
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -68,7 +70,7 @@ def test_the_potential_is_the_integral_of_volume_over_pressure(fluid):
                 epsrel=1e-13,
                 limit=200,
             )[0]
-            for a, b in zip(ends[:-1], ends[1:], strict=True)
+            for a, b in pairwise(ends)
         )
         found = float(fluid.potential(jnp.asarray(pressure)))
         assert found == pytest.approx(expected, rel=1e-12, abs=1e-12)
@@ -128,9 +130,7 @@ def test_air_softens_the_oil_below_dissolution_only():
 def test_without_air_the_law_is_that_of_the_constant_one_for_small_strains():
     aerated, constant = oil(air_fraction=0.0), ConstantFluid(870.0, 1.4e9, 3e3)
     pressure = jnp.asarray([-2e7, 1e5, 3e7])
-    assert not aerated.kinks() or float(aerated.state(jnp.asarray(1e6))) == pytest.approx(
-        1e6 / 1.4e9
-    )
+    assert float(aerated.state(jnp.asarray(1e6))) == pytest.approx(1e6 / 1.4e9)
     at, plain = aerated.at(pressure), constant.at(pressure)
     # Content is a mass for one and a volume for the other: their relative slopes agree.
     np.testing.assert_allclose(at.content_slope / at.content, plain.content_slope, rtol=1e-12)
