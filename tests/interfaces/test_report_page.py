@@ -279,3 +279,26 @@ def test_nobody_beats_a_design_on_the_front():
     for k in range(200):
         beaten = ((x <= x[k]) & (y <= y[k]) & ((x < x[k]) | (y < y[k]))).any()
         assert front[k] == (not beaten)
+
+
+def test_an_undercut_ring_has_gaps_and_a_sentence_and_no_false_margin(study):
+    design = study.designs[1]
+    results = []
+    for result in design.results:
+        stress = result.waves.contact_stress.copy()
+        stress[100:140] = np.nan
+        metrics = {**result.metrics, "max_contact_stress": float("nan")}
+        waves = replace(result.waves, contact_stress=stress)
+        results.append(replace(result, waves=waves, metrics=metrics))
+    unknown = replace(study.constraints[0], margins=(0.04, float("nan")))
+    page = render(
+        replace(
+            study,
+            designs=(study.designs[0], replace(design, results=tuple(results))),
+            constraints=(unknown, *study.constraints[1:]),
+        )
+    )
+    assert "the ring is undercut" in page
+    assert "some margins are unknown" in page
+    for svg in drawings(page):
+        ElementTree.fromstring(svg)

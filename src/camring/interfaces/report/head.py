@@ -1,5 +1,7 @@
 """The head of the report: the motor's name, the verdict, and the few numbers that matter first."""
 
+from math import isfinite
+
 from camring.interfaces.report.data import ReportData
 from camring.interfaces.report.pictures.margins import plain_name
 from camring.interfaces.report.quantities import QUANTITIES, change, significant
@@ -76,13 +78,15 @@ def _keys(data: ReportData) -> str:
                 class_="key",
             )
         )
-    margins = [c.margins[-1] for c in data.constraints]
-    if margins:
-        least = min(margins)
-        name = plain_name(data.constraints[margins.index(least)].name)
-        text = f"{significant(100 * least, 2)}"
+    known = [c for c in data.constraints if isfinite(c.margins[-1])]
+    if known:
+        tightest = min(known, key=lambda constraint: constraint.margins[-1])
+        least, name = tightest.margins[-1], plain_name(tightest.name)
+        unknown = len(known) < len(data.constraints)
+        kept = "some margins are unknown" if unknown else "all limits kept"
+        note = f"{name}: a limit is broken" if least < 0 else f"{name}; {kept}"
+        text = significant(100 * least, 2)
         shown = element("span", text + element("span", " %", class_="unit"), class_="now")
-        note = f"{name}: a limit is broken" if least < 0 else f"{name}; all limits kept"
         keys.append(
             element(
                 "div",

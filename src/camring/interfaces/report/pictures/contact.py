@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from camring.interfaces.report.chart import Chart, draw
-from camring.interfaces.report.data import Constraint, Design
+from camring.interfaces.report.data import Constraint, Design, Result
 from camring.interfaces.report.figure import Figure, degrees, legend, looks, period_axis
 from camring.interfaces.report.layers import Curve, Rule
 from camring.interfaces.report.quantities import significant
@@ -36,14 +36,22 @@ def _stress(designs: Sequence[Design], duty: int, limit: float | None) -> Figure
             legend(designs),
         )
     )
-    worst = designs[-1].results[duty]
-    place = float(np.degrees(worst.waves.angle[int(np.argmax(worst.waves.contact_stress))]))
-    sentence = (
-        f"Stress peaks at {significant(1e-9 * worst.metrics['max_contact_stress'], 3)} GPa, "
-        f"{place:.1f} deg from the inner dead centre: high where supply pressure meets a ring that "
-        "bends away from the roller."
+    return Figure(name, "Contact stress", svg, _stress_words(designs[-1].results[duty]))
+
+
+def _stress_words(result: Result) -> str:
+    stress = result.waves.contact_stress
+    if not np.isfinite(stress).all():
+        return (
+            "Where the curve has gaps the ring is undercut: no such surface can be ground, and "
+            "there is no contact stress to tell."
+        )
+    place = float(np.degrees(result.waves.angle[int(np.argmax(stress))]))
+    most = significant(1e-9 * result.metrics["max_contact_stress"], 3)
+    return (
+        f"Stress peaks at {most} GPa, at {place:.1f} deg: it is high where supply pressure meets "
+        "a ring that bends away from the roller."
     )
-    return Figure(name, "Contact stress", svg, sentence)
 
 
 def _force(designs: Sequence[Design], duty: int) -> Figure:
