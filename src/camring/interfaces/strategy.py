@@ -14,7 +14,6 @@ from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy
 
 MOST_THEORY_DESIGNS = 6
-REFINEMENT_SHARE = 0.2  # of the budget, for Nelder and Mead at the end
 
 
 def first_points(motor_file: MotorFile, *, theory: bool) -> Float[np.ndarray, "points dimension"]:
@@ -40,7 +39,8 @@ def strategy_for(
     """Bayesian search, then a simplex about the best."""
     space = motor_file.design_space
     assert space is not None
-    refinement = int(REFINEMENT_SHARE * budget)
+    settings = motor_file.search
+    refinement = int(settings.refinement * budget)
     return Hybrid(
         (
             Stage(
@@ -48,7 +48,9 @@ def strategy_for(
                     dimension=space.dimension,
                     approximate=evaluator.approximate,
                     given=tuple(tuple(map(float, point)) for point in first),
+                    mode="penalised" if settings.mode == "penalised" else "separate",
                     penalty_weight=motor_file.goal.weights.penalty,
+                    kappa=settings.kappa,
                 ),
                 budget - refinement,
             ),

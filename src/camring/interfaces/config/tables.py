@@ -8,8 +8,6 @@ own class. Units are those in which the program keeps the number.
 from typing import Annotated as Key
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict
-
 from camring.interfaces.config.entries import (
     Band,
     Count,
@@ -18,18 +16,12 @@ from camring.interfaces.config.entries import (
     Numbers,
     Text,
     Word,
-    band,
 )
+from camring.interfaces.config.goal_tables import ConstraintsTable, ObjectiveTable, SearchTable
+from camring.interfaces.config.table import FULL_TURN, Table, pressure_entry
 from camring.physics.oils import OILS
 
 MOST_POINTS = 50  # operating points in one file
-FULL_TURN = 6.283185307179586
-
-
-class Table(BaseModel):
-    """A table of the file: unknown keys are errors, values are final."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 def _length(meaning: str, example: str, leaf: str, low: float = 1e-6) -> Number:
@@ -260,95 +252,17 @@ class FluidTable(Table):
     ] = None
 
 
-def _pressure(meaning: str, example: str, low: float = 0.0) -> Number:
-    return Number(meaning, example, unit="Pa", low=low, high=1e9)
-
-
 class OperatingPointTable(Table):
     """[[operating_points]]"""
 
     speed: Key[float, Number("the shaft speed", '"100 rpm"', unit="rad/s", low=1e-4, high=1e4)]
-    supply_pressure: Key[float, _pressure("the absolute supply pressure", '"250 bar"')]
-    return_pressure: Key[float, _pressure("the absolute return pressure", '"10 bar"')]
+    supply_pressure: Key[float, pressure_entry("the absolute supply pressure", '"250 bar"')]
+    return_pressure: Key[float, pressure_entry("the absolute return pressure", '"10 bar"')]
     case_pressure: Key[
         float | None,
-        _pressure("the absolute case pressure (unless given, the return pressure)", '"2 bar"'),
+        pressure_entry("the absolute case pressure (unless given, the return pressure)", '"2 bar"'),
     ] = None
     weight: Key[float, Number("the weight of this point in the objective", "1", high=1e6)] = 1.0
-
-
-def _weight(meaning: str, example: str) -> Number:
-    return Number(f"the weight of {meaning}", example, high=1e6)
-
-
-class ObjectiveTable(Table):
-    """[objective]: the weights of model.md section 8."""
-
-    torque_ripple: Key[float, _weight("squared torque ripple", "10")] = 10.0
-    pressure_ripple: Key[float, _weight("squared pressure ripple", "0.02")] = 0.02
-    efficiency: Key[float, _weight("one minus efficiency", "1")] = 1.0
-    spectrum: Key[float, _weight("the spectral sum", "1")] = 1.0
-    jerk: Key[float, _weight("the mean squared jerk", "0.02")] = 0.02
-    spectral_pressure: Key[float, _weight("pressure in the spectral sum", "0.01")] = 0.01
-    spectral_torque: Key[float, _weight("torque in the spectral sum", "1")] = 1.0
-    penalty: Key[float, Number("the factor of squared violations", "100", high=1e9)] = 100.0
-    harmonics: Key[
-        int, Count("the number of shaft orders in ripples and sums", "600", high=20000)
-    ] = 600
-
-
-def _limit(
-    meaning: str, example: str, unit: str = "1", low: float = 0.0, high: float = 1e12
-) -> Number:
-    return Number(f"the limit of {meaning}", example, unit=unit, low=low, high=high)
-
-
-class ConstraintsTable(Table):
-    """[constraints]: results with their sense; a limit that is not given is none."""
-
-    min_pressure: Key[
-        float | None,
-        _pressure("the least chamber pressure (unless given, the vapour pressure)", '"3 kPa"'),
-    ] = None
-    max_pressure: Key[float | None, _pressure("the greatest chamber pressure", '"300 bar"', 1)] = (
-        None
-    )
-    max_contact_stress: Key[
-        float | None, _limit("Hertzian contact stress", '"1.8 GPa"', "Pa", 1.0)
-    ] = None
-    min_contact_force: Key[
-        float | None, _limit("the force of roller on ring", '"0 N"', "N", -1e9)
-    ] = None
-    max_pressure_angle: Key[
-        float | None, _limit("the pressure angle", '"30 deg"', "rad", 1e-6, FULL_TURN / 4)
-    ] = None
-    min_undercut_factor: Key[
-        float | None, _limit("the undercut factor", "0.25", low=-10.0, high=10.0)
-    ] = None
-    max_velocity: Key[float | None, _limit("piston speed", '"2 m/s"', "m/s", 1e-9)] = None
-    max_acceleration: Key[
-        float | None, _limit("piston acceleration", '"500 m/s^2"', "m/s^2", 1e-9)
-    ] = None
-    max_jerk: Key[float | None, _limit("piston jerk", '"1e5 m/s^3"', "m/s^3", 1e-9)] = None
-    min_damping_ratio: Key[float | None, _limit("the damping ratio", "0.001", high=10.0)] = None
-    min_mean_torque: Key[float | None, _limit("the mean torque", '"1.5 kN*m"', "N*m", -1e9)] = None
-    displacement: Key[
-        tuple[float, float] | None,
-        band(_limit("the volume per revolution", '"400 cm^3"', "m^3", 0.0, 1e3)),
-    ] = None
-    stroke: Key[
-        tuple[float, float] | None, band(_limit("the stroke", '"12 mm"', "m", 0.0, 100.0))
-    ] = None
-    lift: Key[
-        tuple[float, float] | None, band(_limit("the lift", '"12 mm"', "m", -100.0, 100.0))
-    ] = None
-
-
-class SearchTable(Table):
-    """[search]"""
-
-    budget: Key[int, Count("the number of model evaluations", "300", high=1_000_000)] = 300
-    seed: Key[int, Count("the number all chance comes from", "0", low=0, high=2**31)] = 0
 
 
 class FileTables(Table):
