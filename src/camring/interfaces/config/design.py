@@ -100,6 +100,8 @@ def _variable(
         bounds = bounds["relative"] if relative else bounds["bounds"]
     paths = (path, *_companions(path, companions))
     entries = [_varied(each, keys, tables) for each in paths]
+    for each, entry in zip(paths, entries, strict=True):
+        _require_present(each, entry, system)
     item = SHARE if relative else replace(entries[0], leaves=())
     assert isinstance(item, Number)
     low, high = _bounds(path, bounds, item)
@@ -159,6 +161,17 @@ def _varied(path: str, keys: dict[str, Entry], tables: FileTables) -> Number:
             "give motor.cam.reference_radius as a length to vary it",
         )
     return entry
+
+
+def _require_present(path: str, entry: Number, system: System) -> None:
+    try:
+        leaf(entry.leaves[0])(system)
+    except AttributeError:
+        raise InputError(
+            _field(path),
+            "varies a part that the motor does not have",
+            f"give {path} a value too, where the search begins",
+        ) from None
 
 
 def _bounds(path: str, bounds: Any, item: Number) -> tuple[float, float]:
