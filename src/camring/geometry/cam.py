@@ -16,7 +16,13 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q, real
-from camring.numerics.spline import Jet, evaluate_periodic, evaluate_span, knots
+from camring.numerics.spline import (
+    Jet,
+    evaluate_periodic,
+    evaluate_span,
+    floor_past_rounding,
+    knots,
+)
 
 
 class AbstractCam(eqx.Module):
@@ -54,7 +60,7 @@ class AbstractCam(eqx.Module):
         width: Q[Float[Array, " element"], "rad"],
         fraction: Float[Array, " point"],
     ) -> Jet:
-        """The same on elements no breakpoint divides, shape (element, point).
+        """The same on elements no breakpoint divides, shape (point, element).
 
         At an element's end the derivatives are those from inside it, so a jump
         of jerk at a knot is seen from both sides.
@@ -90,10 +96,10 @@ class RadialCam(AbstractCam):
     ) -> Jet:
         spacing = self.period / self.control_count
         offset = (self.degree + 1) / 2
-        span = jnp.floor((start + width / 2) / spacing + offset)
-        within = (start / spacing + offset - span)[:, None] + fraction * (width / spacing)[:, None]
+        span = floor_past_rounding((start + width / 2) / spacing + offset)
+        within = start / spacing + offset - span + fraction[:, None] * (width / spacing)
         return evaluate_span(
-            self.control_radii, span.astype(jnp.int32)[:, None], within, spacing, self.degree
+            self.control_radii, span.astype(jnp.int32), within, spacing, self.degree
         )
 
 
@@ -148,7 +154,7 @@ class PlanarCam(AbstractCam):
         count = 8 * self.control_count
         table = self.period * (jnp.arange(count + 1) / count)
         polar = self._polar_angle(table, self._curve(table).value)
-        turns = jnp.floor((angle - polar[0]) / self.period) * self.period
+        turns = floor_past_rounding((angle - polar[0]) / self.period) * self.period
         parameter = jnp.interp(angle - turns, polar, table) + turns
 
         def newton(guess: Array, _: None) -> tuple[Array, None]:
@@ -193,4 +199,4 @@ class PlanarCam(AbstractCam):
     ) -> Jet:
         # A hair inside the element, so that a knot's derivatives come from this side.
         inside = 1e-9 + (1 - 2e-9) * fraction
-        return self.pitch_radius(start[:, None] + inside * width[:, None])
+        return self.pitch_radius(start + inside[:, None] * width)

@@ -46,7 +46,7 @@ def power_balance(cycle: Cycle, samples: QuadratureSamples) -> PowerBalance:
     speed = point.shaft_speed
     damping = motor.viscous_damping(fluid)
 
-    def of_all(power: Float[Array, "element point"]) -> Float[Array, ""]:
+    def of_all(power: Float[Array, "point element"]) -> Float[Array, ""]:
         return motor.pistons * samples.mean(power)
 
     amount_flow = of_all(piston.supply_flow)

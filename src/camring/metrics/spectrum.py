@@ -25,11 +25,11 @@ class QuadratureSamples(NamedTuple):
     """The reference piston at Gauss points of every element, and their weights."""
 
     piston: PistonState
-    pressure_slope: Q[Float[Array, "element point"], "Pa/rad"]
+    pressure_slope: Q[Float[Array, "point element"], "Pa/rad"]
     """Slope of the solution itself, which meets the equation to solver accuracy only."""
-    weights: Float[Array, "element point"]
+    weights: Float[Array, "point element"]
 
-    def mean(self, values: Float[Array, "element point"]) -> Float[Array, ""]:
+    def mean(self, values: Float[Array, "point element"]) -> Float[Array, ""]:
         """Mean over a period."""
         return jnp.sum(self.weights * values) / jnp.sum(self.weights)
 
@@ -57,22 +57,23 @@ def quadrature_samples(cycle: Cycle) -> QuadratureSamples:
     slope = cycle.orbit.slope(jnp.asarray(points)) / cycle.fluid.state_slope(
         piston.chamber_pressure
     )
-    return QuadratureSamples(piston, slope, cycle.orbit.mesh.width[:, None] * weights)
+    return QuadratureSamples(piston, slope, weights[:, None] * cycle.orbit.mesh.width)
 
 
 def chamber_spectra(
     cycle: Cycle,
     samples: QuadratureSamples,
-    waveforms: list[Float[Array, "element point"]],
+    waveforms: list[Float[Array, "point element"]],
     highest_order: int,
 ) -> list[Spectrum]:
     """Spectra of several waveforms of one piston, orders up to the highest."""
     step = cycle.motor.cam.repeats
     count = highest_order // step
-    stacked = jnp.stack([wave.reshape(-1) for wave in waveforms])
-    weights = samples.weights.reshape(-1)
-    amplitudes = harmonics(stacked, weights, samples.piston.angle.reshape(-1), step, count)
+    mesh = cycle.orbit.mesh
     orders = step * np.arange(1, count + 1)
+    to_zero_angle = jnp.exp(-1j * orders * mesh.start[0])
+    stacked = jnp.stack(waveforms)
+    amplitudes = to_zero_angle * harmonics(stacked, mesh, cycle.motor.cam.period, count)
     return [
         Spectrum(samples.mean(wave), amplitude, orders)
         for wave, amplitude in zip(waveforms, amplitudes, strict=True)

@@ -8,6 +8,7 @@ from jaxtyping import Array, Float
 
 from camring.geometry.contour import pressure_angle, undercut_factor
 from camring.geometry.extremes import extreme_radius
+from camring.metrics.cavitation import cavitation
 from camring.metrics.power_balance import power_balance
 from camring.metrics.spectrum import chamber_spectra, of_all_pistons, quadrature_samples
 from camring.metrics.stiffness import oscillator
@@ -49,6 +50,10 @@ class Metrics(eqx.Module):
     max_pressure: Q[Float[Array, ""], "Pa"]
     pressure_overshoot: Q[Float[Array, ""], "Pa"]
     pressure_undershoot: Q[Float[Array, ""], "Pa"]
+    air_release_margin: Q[Float[Array, ""], "Pa"]
+    vapour_margin: Q[Float[Array, ""], "Pa"]
+    share_below_air_release: Q[Float[Array, ""], "1"]
+    share_below_vapour: Q[Float[Array, ""], "1"]
     min_contact_force: Q[Float[Array, ""], "N"]
     max_contact_stress: Q[Float[Array, ""], "Pa"]
     min_undercut_factor: Q[Float[Array, ""], "1"]
@@ -91,6 +96,7 @@ def summarise(cycle: Cycle, highest_order: int = 600) -> Metrics:
     spring = oscillator(cycle, samples.mean(piston.chamber.volume))
     least_pressure = minimum(corners.chamber_pressure)
     most_pressure = maximum(corners.chamber_pressure)
+    starved = cavitation(cycle, corners.chamber_pressure, least_pressure)
 
     return Metrics(
         mean_torque=mean_torque,
@@ -122,6 +128,10 @@ def summarise(cycle: Cycle, highest_order: int = 600) -> Metrics:
         max_pressure=most_pressure,
         pressure_overshoot=jnp.maximum(most_pressure - point.supply_pressure, 0),
         pressure_undershoot=jnp.maximum(point.return_pressure - least_pressure, 0),
+        air_release_margin=starved.air_release_margin,
+        vapour_margin=starved.vapour_margin,
+        share_below_air_release=starved.share_below_air_release,
+        share_below_vapour=starved.share_below_vapour,
         min_contact_force=minimum(corners.force),
         max_contact_stress=maximum(corners.contact_stress),
         min_undercut_factor=minimum(undercut_factor(corners.radius, motor.roller.radius)),

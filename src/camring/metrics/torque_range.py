@@ -12,8 +12,9 @@ from jaxtyping import Array, Float
 
 from camring.numerics.extremum import vertex_value
 from camring.numerics.quantity import Q
+from camring.numerics.spline import floor_past_rounding
 from camring.physics.cycle import Cycle
-from camring.physics.waveforms import shaft_torque
+from camring.physics.piston_state import sample_located
 
 
 class TorqueRange(NamedTuple):
@@ -24,14 +25,29 @@ class TorqueRange(NamedTuple):
 
 
 def torque_range(cycle: Cycle) -> TorqueRange:
-    """Extremes of shaft torque, refined by a parabola in every smooth interval."""
-    start = cycle.orbit.mesh.start
-    phase = cycle.motor.cam.period / cycle.motor.distinct_phases
-    folded = jnp.sort(start % phase)
-    following = jnp.concatenate([folded[1:], folded[:1] + phase])
-    middle = (folded + following) / 2
-    at_node, at_middle = shaft_torque(cycle, jnp.stack([folded, middle]))
-    after = jnp.roll(at_node, -1)
-    highest = jnp.max(vertex_value(at_node, at_middle, after))
-    lowest = -jnp.max(vertex_value(-at_node, -at_middle, -after))
+    """Extremes of shaft torque, refined by a parabola in every smooth interval.
+
+    The element in which each piston stands needs no search: going round, piston
+    `j` enters its next element exactly at the folded nodes that are its own.
+    """
+    motor, mesh = cycle.motor, cycle.orbit.mesh
+    phases = motor.distinct_phases
+    phase = motor.cam.period / phases
+    from_first = mesh.start - mesh.start[0]
+    own = jnp.clip(floor_past_rounding(from_first / phase), 0, phases - 1)
+    folded = jnp.maximum(from_first - own * phase, 0)
+    order = jnp.lexsort((own, folded))
+    angle = folded[order]
+    following = jnp.concatenate([angle[1:], jnp.full(1, phase)])
+
+    piston = jnp.arange(phases)[:, None]
+    entered = jnp.cumsum(own[order] == piston, axis=1)
+    passed = jnp.sum(own < piston, axis=1, keepdims=True)
+    element = jnp.clip(passed + entered - 1, 0)
+    where = piston * phase + jnp.stack([angle, (angle + following) / 2])[:, None]
+    torque = sample_located(cycle, element, where - from_first[element]).torque
+    at_start, at_middle = motor.pistons // phases * jnp.sum(torque, axis=1)
+    at_end = jnp.roll(at_start, -1)
+    highest = jnp.max(vertex_value(at_start, at_middle, at_end))
+    lowest = -jnp.max(vertex_value(-at_start, -at_middle, -at_end))
     return TorqueRange(highest, lowest)

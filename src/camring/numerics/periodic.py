@@ -14,25 +14,38 @@ equations are a 3 x 3 system; eliminating the stages leaves
 growths is the Floquet multiplier of the orbit, so the periodic solve costs one
 pass and tells how unique the orbit is.
 
-The mesh has a fixed number of elements and keeps every breakpoint as a node.
-It is laid three times by equidistribution (de Boor 1973): from a backward Euler
-sweep on a graded mesh, again from the sweep repeated on that mesh, and last
-from the fourth derivative of the collocation solution itself.
+The mesh (`mesh.py`) has a fixed number of elements and keeps every breakpoint
+as a node. It is laid by equidistribution: from a backward Euler sweep on a
+graded mesh, and again from the fourth derivative of the collocation solution.
 
 Derivatives pass through one last Newton step taken from a constant, which is
 the implicit function theorem on the discrete orbit; the mesh moves with its
 breakpoints, element fractions held.
+
+Arrays run over points of an element first and over elements last, so that the
+long axis is the one a processor's lanes run along.
 """
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax.lax import stop_gradient
-from jaxtyping import Array, Bool, Float, Int
+from jaxtyping import Array, Float, Int
+
+from camring.numerics.crossing import crossings, with_nodes_at
+from camring.numerics.equation import Equation, Forcing
+from camring.numerics.mesh import (
+    Breakpoints,
+    Mesh,
+    curvature_density,
+    equidistribute,
+    follow_breakpoints,
+    fourth_derivative_density,
+    graded_mesh,
+)
 
 STAGES = np.array([(4 - 6**0.5) / 10, (4 + 6**0.5) / 10, 1.0])
 """Radau points of an element of unit width."""
@@ -50,78 +63,32 @@ STAGE_INTEGRALS = _stage_integrals()
 
 _TO_POWERS = np.linalg.inv(np.vander(np.concatenate([[0.0], STAGES]), 4, increasing=True))
 
-Forcing = Any
-
-
-class Equation(eqx.Module):
-    """`dy/dx = rate(parameters, forcing, y)`, with its parameters in the open.
-
-    `rate` is elementwise in forcing and state. `forcing(parameters, start,
-    width, fraction)` gives the forcing at the same fractions of every element,
-    leaves of shape (element, point).
-    """
-
-    parameters: Any
-    rate_law: Callable[..., Float[Array, "*grid"]] = eqx.field(static=True)
-    forcing_law: Callable[..., Forcing] = eqx.field(static=True)
-
-    def rate(self, forcing: Forcing, state: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
-        return self.rate_law(self.parameters, forcing, state)
-
-    def rate_and_slope(
-        self, forcing: Forcing, state: Float[Array, "*grid"]
-    ) -> tuple[Float[Array, "*grid"], Float[Array, "*grid"]]:
-        """The rate and its derivative with respect to the state."""
-        return jax.jvp(lambda y: self.rate(forcing, y), (state,), (jnp.ones_like(state),))
-
-    def forcing(self, mesh: "Mesh", fraction: Float[Array, " point"]) -> Forcing:
-        return self.forcing_law(self.parameters, mesh.start, mesh.width, fraction)
-
-    def frozen(self) -> "Equation":
-        """The same equation, through which no derivative passes to its parameters."""
-        constant = jax.tree.map(stop_gradient, self.parameters)
-        return Equation(constant, self.rate_law, self.forcing_law)
-
 
 class PeriodicResolution(NamedTuple):
     """How finely an orbit is looked at; all static."""
 
     elements: int
-    """Elements in one period, more than there are breakpoints."""
+    """Elements in one period, more than the breakpoints take for themselves."""
     refinements: int = 1
     """Times the mesh is laid anew from a collocation solution."""
     iterations: int = 24
-    """Newton iterations at most, on each of the two collocation meshes."""
-    tolerance: float = 1e-11
-    """Newton stops when its step is this small against the range of the orbit."""
-
-
-class Breakpoints(NamedTuple):
-    """Where the forcing is not smooth, ascending within one period; may coincide."""
-
-    position: Float[Array, " breakpoint"]
-    sharp: Bool[Array, " breakpoint"]
-    """Whether the rate itself has a kink there, after which a stiff state lags in a thin layer."""
-
-
-class Mesh(NamedTuple):
-    """Elements of one period; zero-width ones are allowed."""
-
-    start: Float[Array, " element"]
-    width: Float[Array, " element"]
-    is_first: Bool[Array, " element"]
-    """Whether a breakpoint lies at the element's start."""
+    """Newton iterations at most, on each collocation mesh."""
+    tolerance: float = 1e-9
+    """Newton stops when its step is this small against the range of the orbit; it is
+    quadratic, and one more step follows."""
+    rough_tolerance: float = 1e-3
+    """The same on meshes that only serve to lay the next one."""
 
 
 class Orbit(eqx.Module):
     """One period of the solution: cubic in each element.
 
-    At fraction `x` of element `k` the state is `sum_p coefficients[k, p] x^p`.
+    At fraction `x` of element `k` the state is `sum_p coefficients[p, k] x^p`.
     """
 
     mesh: Mesh
     node_state: Float[Array, " element"]
-    stage_state: Float[Array, "element 3"]
+    stage_state: Float[Array, "3 element"]
     multiplier: Float[Array, ""]
     """Floquet multiplier: what remains of a disturbance after one period."""
     residual: Float[Array, ""]
@@ -129,31 +96,50 @@ class Orbit(eqx.Module):
     iterations: Int[Array, ""]
 
     @property
-    def coefficients(self) -> Float[Array, "element 4"]:
+    def coefficients(self) -> Float[Array, "4 element"]:
         return element_powers(self.node_state, self.stage_state)
 
-    def at(self, fraction: Float[Array, " point"]) -> Float[Array, "element point"]:
+    def at(self, fraction: Float[Array, " point"]) -> Float[Array, "point element"]:
         """State at the same fractions of every element."""
-        return self.coefficients @ (fraction ** np.arange(4)[:, None])
+        return _horner(self.coefficients[:, None, :], fraction[:, None])
 
-    def slope(self, fraction: Float[Array, " point"]) -> Float[Array, "element point"]:
-        """Derivative of the state by the angle, at fractions of every element."""
-        rise = self.coefficients[:, 1:] @ (
-            np.arange(1, 4)[:, None] * fraction ** np.arange(3)[:, None]
-        )
-        width = self.mesh.width[:, None]
+    def slope(self, fraction: Float[Array, " point"]) -> Float[Array, "point element"]:
+        """Derivative of the state by position, at fractions of every element."""
+        derivative = self.coefficients[1:] * np.arange(1, 4)[:, None]
+        rise = _horner(derivative[:, None, :], fraction[:, None])
+        width = self.mesh.width
         return jnp.where(width > 0, rise / jnp.where(width > 0, width, 1), 0)
 
-    def at_positions(self, position: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
-        """State at positions within the period that the mesh covers."""
-        return _interpolate(self.mesh, self.coefficients, position)
+    def at_offset(
+        self, element: Int[Array, "*grid"], offset: Float[Array, "*grid"]
+    ) -> Float[Array, "*grid"]:
+        """State at offsets from the starts of numbered elements."""
+        width = self.mesh.width[element]
+        fraction = jnp.where(width > 0, offset / jnp.where(width > 0, width, 1), 1)
+        return _horner(jnp.moveaxis(self.coefficients.T[element], -1, 0), fraction)
 
 
 def element_powers(
-    node_state: Float[Array, " element"], stage_state: Float[Array, "element 3"]
-) -> Float[Array, "element 4"]:
+    node_state: Float[Array, " element"], stage_state: Float[Array, "3 element"]
+) -> Float[Array, "4 element"]:
     """Coefficients of the cubic through an element's start and its three stages."""
-    return jnp.concatenate([node_state[:, None], stage_state], axis=1) @ _TO_POWERS.T
+    known = [node_state, *stage_state]
+    return jnp.stack([_combine(row, known) for row in _TO_POWERS])
+
+
+def _combine(factors: np.ndarray, arrays: list[Array]) -> Array:
+    """A short linear combination, written out so that it fuses with what is around it."""
+    total = float(factors[0]) * arrays[0]
+    for factor, array in zip(factors[1:], arrays[1:], strict=True):
+        total = total + float(factor) * array
+    return total
+
+
+def _horner(powers: Array, fraction: Array) -> Array:
+    total = powers[-1]
+    for coefficient in powers[-2::-1]:
+        total = total * fraction + coefficient
+    return total
 
 
 def solve_periodic(
@@ -180,56 +166,45 @@ def solve_periodic(
     """
     fixed = jax.tree.map(stop_gradient, breakpoints)
     frozen = equation.frozen()
+    elements = resolution.elements
 
-    mesh = _graded_mesh(fixed.position, period)
+    mesh = graded_mesh(fixed.position, period)
     nodes = _backward_euler(frozen, mesh, stop_gradient(guess), sweeps=2)
-    for _ in range(2):
-        density = _curvature_density(mesh, nodes, period)
-        layer = _layer_width(frozen, mesh, nodes[:-1], period, fixed)
-        mesh = _equidistribute(mesh, density, fixed, layer, period, resolution.elements)
-        nodes = _backward_euler(frozen, mesh, nodes[-1], sweeps=1)
-    stages = _stage_guess(frozen, mesh, nodes)
-    stages, _ = _newton(frozen, mesh, stages, resolution)
+    density = curvature_density(mesh, nodes, period)
+    layer = _layer_width(frozen, mesh, nodes[:-1], period, fixed)
+    mesh = equidistribute(mesh, density, fixed, layer, period, elements)
+    nodes = _backward_euler(frozen, mesh, nodes[-1], sweeps=1)
+    at_stages = frozen.forcing(mesh, jnp.asarray(STAGES))
+    stages = _stage_guess(frozen, at_stages, mesh, nodes)
+    tolerances = [resolution.rough_tolerance] * resolution.refinements + [resolution.tolerance]
+    limit = resolution.iterations
+    stages, iterations = _newton(frozen, at_stages, mesh, stages, tolerances[0], limit)
 
-    for _ in range(resolution.refinements):
-        node_state, stages, _ = _periodic_step(frozen, mesh, stages)
-        density = _fourth_derivative_density(mesh, node_state, stages, period)
+    for tolerance in tolerances[1:]:
+        node_state, stages, _ = _periodic_step(frozen, at_stages, mesh, stages)
+        powers = element_powers(node_state, stages)
+        extent = _extent(stages)
+        density = fourth_derivative_density(mesh, powers[3], extent, period)
         layer = _layer_width(frozen, mesh, node_state, period, fixed)
-        old_mesh, powers = mesh, element_powers(node_state, stages)
-        mesh = _equidistribute(old_mesh, density, fixed, layer, period, resolution.elements)
-        places = mesh.start[:, None] + mesh.width[:, None] * STAGES
-        stages = _interpolate(old_mesh, powers, places)
-        stages, iterations = _newton(frozen, mesh, stages, resolution)
+        finer = equidistribute(mesh, density, fixed, layer, period, elements)
+        for level in frozen.kinks:
+            finer = with_nodes_at(finer, crossings(mesh, powers, level))
+        stages = _interpolate(mesh, powers, finer.at(STAGES))
+        mesh = finer
+        at_stages = frozen.forcing(mesh, jnp.asarray(STAGES))
+        stages, iterations = _newton(frozen, at_stages, mesh, stages, tolerance, limit)
 
-    mesh = _follow_breakpoints(mesh, breakpoints.position, period)
-    stages = stop_gradient(stages)
-    node_state, stages, multiplier = _periodic_step(equation, mesh, stages)
-    residual = _collocation_residual(equation, mesh, node_state, stages)
+    mesh = follow_breakpoints(mesh, breakpoints.position, period)
+    at_stages = equation.forcing(mesh, jnp.asarray(STAGES))
+    node_state, stages, multiplier = _periodic_step(
+        equation, at_stages, mesh, stop_gradient(stages)
+    )
+    residual = _collocation_residual(equation, at_stages, mesh, node_state, stages)
     return Orbit(mesh, node_state, stages, multiplier, residual, iterations)
 
 
-# --- meshes ---------------------------------------------------------------
-
-
-def _segment_ends(breakpoints: Array, period: float) -> tuple[Array, Array]:
-    following = jnp.concatenate([breakpoints[1:], breakpoints[:1] + period])
-    return breakpoints, following
-
-
-def _graded_mesh(breakpoints: Float[Array, " breakpoint"], period: float) -> Mesh:
-    """Six elements between breakpoints, finer towards both."""
-    per_segment = 6
-    fractions = (np.tanh(2.2 * np.linspace(-1, 1, per_segment + 1)) / np.tanh(2.2) + 1) / 2
-    begin, end = _segment_ends(breakpoints, period)
-    span = (end - begin)[:, None]
-    start = begin[:, None] + span * fractions[:-1]
-    width = span * np.diff(fractions)
-    first = np.tile(np.arange(per_segment) == 0, len(breakpoints))
-    return Mesh(start.reshape(-1), width.reshape(-1), jnp.asarray(first))
-
-
-LAYER_ELEMENTS = 2
-"""Elements kept for the thin layer behind each sharp breakpoint."""
+def _extent(states: Array) -> Float[Array, ""]:
+    return jnp.max(states) - jnp.min(states) + 1e-300
 
 
 def _layer_width(
@@ -240,114 +215,11 @@ def _layer_width(
     breakpoints: Breakpoints,
 ) -> Float[Array, " breakpoint"]:
     """Relaxation length `1/|slope of the rate|` just behind each breakpoint."""
-    at_start = jax.tree.map(lambda leaf: leaf[:, 0], equation.forcing(mesh, jnp.zeros(1)))
-    _, slope = equation.rate_and_slope(at_start, node_state)
     first = jnp.nonzero(mesh.is_first, size=breakpoints.position.shape[0])[0]
-    return 1 / jnp.maximum(jnp.abs(slope[first]), 1 / period)
-
-
-def _equidistribute(
-    mesh: Mesh,
-    density: Float[Array, " element"],
-    breakpoints: Breakpoints,
-    layer: Float[Array, " breakpoint"],
-    period: float,
-    elements: int,
-) -> Mesh:
-    """A mesh whose elements hold equal shares of the density's integral.
-
-    Each segment between breakpoints gets at least one element; the counts are
-    rounded, so nodes fall on breakpoints exactly. A segment that begins at a
-    sharp breakpoint gets two thin ones more, of three and nine relaxation lengths.
-    """
-    begin, end = _segment_ends(breakpoints.position, period)
-    mass = jnp.concatenate([jnp.zeros(1), jnp.cumsum(density * mesh.width)])
-    node = jnp.concatenate([mesh.start, begin[:1] + period])
-    bounds = jnp.concatenate([begin, end[-1:]])
-    mass_at = jnp.interp(bounds, node, mass)
-    thin = LAYER_ELEMENTS * breakpoints.sharp
-    promised = jnp.concatenate([jnp.zeros(1, thin.dtype), jnp.cumsum(1 + thin)])
-    wanted = jnp.round(mass_at / mass_at[-1] * (elements - promised[-1]))
-    first_element = wanted.astype(jnp.int32) + promised
-
-    element = jnp.arange(elements)
-    segment = jnp.searchsorted(first_element, element, side="right") - 1
-    ordinary = first_element[segment + 1] - first_element[segment] - thin[segment]
-
-    def by_density(share: Array) -> Array:
-        target = mass_at[segment] + share * (mass_at[segment + 1] - mass_at[segment])
-        inner = jnp.clip(jnp.interp(target, mass, node), begin[segment], end[segment])
-        outer = jnp.where(share <= 0, begin[segment], end[segment])
-        return jnp.where((share <= 0) | (share >= 1), outer, inner)
-
-    first_width = by_density(1 / ordinary) - begin[segment]
-    one = jnp.minimum(3 * layer[segment], first_width / 8)
-    two = jnp.minimum(12 * layer[segment], first_width / 2)
-
-    def place(index: Array) -> Array:
-        past_thin = index - first_element[segment] - thin[segment]
-        regular = by_density(jnp.maximum(past_thin, 0) / ordinary)
-        within = jnp.where(past_thin == -1, one, jnp.where(past_thin == 0, two, 0.0))
-        in_layer = (thin[segment] > 0) & (past_thin <= 0)
-        return jnp.where(in_layer, begin[segment] + within, regular)
-
-    start = place(element)
-    width = jnp.maximum(place(element + 1) - start, 0)
-    return Mesh(start, width, element == first_element[segment])
-
-
-def _follow_breakpoints(
-    mesh: Mesh, breakpoints: Float[Array, " breakpoint"], period: float
-) -> Mesh:
-    """The same mesh, its nodes carried along by the breakpoints they lie between."""
-    begin, end = _segment_ends(breakpoints, period)
-    segment = jnp.cumsum(mesh.is_first) - 1
-    span = stop_gradient(end - begin)[segment]
-    safe = jnp.where(span > 0, span, 1.0)
-    left = stop_gradient(jnp.where(span > 0, (mesh.start - begin[segment]) / safe, 0.0))
-    share = stop_gradient(jnp.where(span > 0, mesh.width / safe, 0.0))
-    moving = (end - begin)[segment]
-    return Mesh(begin[segment] + left * moving, share * moving, mesh.is_first)
-
-
-def _curvature_density(
-    mesh: Mesh, nodes: Float[Array, " node"], period: float
-) -> Float[Array, " element"]:
-    """Elements wanted for each unit of length by a first-order solution."""
-    extent = jnp.max(nodes) - jnp.min(nodes) + 1e-300
-    width = jnp.maximum(mesh.width, 1e-14 * period)
-    slope = jnp.diff(nodes) / width / extent
-    bend = jnp.abs(slope - jnp.roll(slope, 1)) / ((width + jnp.roll(width, 1)) / 2)
-    density = jnp.sqrt(jnp.maximum(bend, jnp.roll(bend, -1)))
-    return _level(jnp.minimum(density, 1e6 / period), mesh, period)
-
-
-def _fourth_derivative_density(
-    mesh: Mesh,
-    node_state: Float[Array, " element"],
-    stages: Float[Array, "element 3"],
-    period: float,
-) -> Float[Array, " element"]:
-    """Elements wanted for each unit of length by the cubic's own error term.
-
-    The fourth derivative is the change of third derivative from element to
-    element, not counted across breakpoints, where it jumps of right.
-    """
-    extent = jnp.max(stages) - jnp.min(stages) + 1e-300
-    width = jnp.maximum(mesh.width, 1e-14 * period)
-    third = 6 * element_powers(node_state, stages)[:, 3] / width**3 / extent
-    change = jnp.abs(third - jnp.roll(third, 1)) / ((width + jnp.roll(width, 1)) / 2)
-    change = jnp.where(mesh.is_first, 0.0, change)
-    density = jnp.maximum(change, jnp.roll(change, -1)) ** 0.25
-    spread = jnp.maximum(jnp.roll(density, 1), jnp.roll(density, -1)) / 2
-    return _level(jnp.minimum(jnp.maximum(density, spread), 1e7 / period), mesh, period)
-
-
-def _level(
-    density: Float[Array, " element"], mesh: Mesh, period: float
-) -> Float[Array, " element"]:
-    """Half the elements by density, half evenly, so that none grows wide."""
-    return density + jnp.sum(density * mesh.width) / period + 1 / period
+    behind = Mesh(*(leaf[first] for leaf in mesh))
+    at_start = jax.tree.map(lambda leaf: leaf[0], equation.forcing(behind, jnp.zeros(1)))
+    _, slope = equation.rate_and_slope(at_start, node_state[first])
+    return 1 / jnp.maximum(jnp.abs(slope), 1 / period)
 
 
 # --- first guess ----------------------------------------------------------
@@ -359,7 +231,7 @@ def _implicit_solve(
     before: Array,
     step: Array,
     guess: Array,
-    iterations: int = 8,
+    iterations: int,
 ) -> Array:
     """`y = before + step * rate(y)` by Newton kept inside a bracket that shrinks."""
     low = jnp.full_like(guess, -jnp.inf)
@@ -381,11 +253,11 @@ def _backward_euler(
     equation: Equation, mesh: Mesh, begin: Float[Array, ""], sweeps: int
 ) -> Float[Array, " node"]:
     """Node states of one period after `sweeps` periods from `begin`: first order, robust."""
-    at_end = jax.tree.map(lambda leaf: leaf[:, 0], equation.forcing(mesh, jnp.ones(1)))
+    at_end = jax.tree.map(lambda leaf: leaf[0], equation.forcing(mesh, jnp.ones(1)))
 
     def advance(state: Array, element: tuple[Forcing, Array]) -> tuple[Array, Array]:
         end_forcing, step = element
-        after = _implicit_solve(equation, end_forcing, state, step, state)
+        after = _implicit_solve(equation, end_forcing, state, step, state, iterations=5)
         return after, after
 
     for _ in range(sweeps):
@@ -395,13 +267,13 @@ def _backward_euler(
 
 
 def _stage_guess(
-    equation: Equation, mesh: Mesh, nodes: Float[Array, " node"]
-) -> Float[Array, "element 3"]:
+    equation: Equation, at_stages: Forcing, mesh: Mesh, nodes: Float[Array, " node"]
+) -> Float[Array, "3 element"]:
     """Each stage by its own backward Euler step from the element's start."""
-    at_stages = equation.forcing(mesh, jnp.asarray(STAGES))
-    before = nodes[:-1, None] + jnp.zeros(3)
-    line = before + jnp.diff(nodes)[:, None] * STAGES
-    return _implicit_solve(equation, at_stages, before, mesh.width[:, None] * STAGES, line)
+    before = jnp.broadcast_to(nodes[:-1], (3, nodes.shape[0] - 1))
+    line = before + STAGES[:, None] * jnp.diff(nodes)
+    step = STAGES[:, None] * mesh.width
+    return _implicit_solve(equation, at_stages, before, step, line, iterations=3)
 
 
 # --- collocation ----------------------------------------------------------
@@ -417,29 +289,29 @@ def _solve_stages(matrix: list[list[Array]], *right_sides: list[Array]) -> tuple
     ]
     scale = 1 / (a * cofactors[0][0] + b * cofactors[1][0] + c * cofactors[2][0])
     return tuple(
-        [scale * sum(row[j] * right[j] for j in range(3)) for row in cofactors]
+        [scale * (row[0] * right[0] + row[1] * right[1] + row[2] * right[2]) for row in cofactors]
         for right in right_sides
     )
 
 
 def _periodic_step(
-    equation: Equation, mesh: Mesh, stages: Float[Array, "element 3"]
-) -> tuple[Float[Array, " element"], Float[Array, "element 3"], Float[Array, ""]]:
+    equation: Equation, at_stages: Forcing, mesh: Mesh, stages: Float[Array, "3 element"]
+) -> tuple[Float[Array, " element"], Float[Array, "3 element"], Float[Array, ""]]:
     """One Newton step of all collocation equations and periodicity together.
 
     Returns node states, stage states and the Floquet multiplier.
     """
-    at_stages = equation.forcing(mesh, jnp.asarray(STAGES))
     value, slope = equation.rate_and_slope(at_stages, stages)
     slope = stop_gradient(slope)
-    defect = mesh.width[:, None] * (value @ STAGE_INTEGRALS.T) - stages
+    defect = [
+        mesh.width * _combine(row, list(value)) - stages[i] for i, row in enumerate(STAGE_INTEGRALS)
+    ]
     step = stop_gradient(mesh.width)
     matrix = [
-        [float(i == j) - step * STAGE_INTEGRALS[i, j] * slope[:, j] for j in range(3)]
+        [float(i == j) - step * float(STAGE_INTEGRALS[i, j]) * slope[j] for j in range(3)]
         for i in range(3)
     ]
-    ones = [jnp.ones_like(step)] * 3
-    growth, offset = _solve_stages(matrix, ones, [defect[:, i] for i in range(3)])
+    growth, offset = _solve_stages(matrix, [jnp.ones_like(step)] * 3, defect)
 
     def compose(so_far: tuple, element: tuple) -> tuple:
         product, total = so_far
@@ -447,65 +319,71 @@ def _periodic_step(
         total = element[0] * total + element[1]
         return (product, total), so_far
 
-    last = (growth[2], stages[:, 2] + offset[2])
+    last = (growth[2], stages[2] + offset[2])
     unit = (jnp.ones_like(stages[0, 0]), jnp.zeros_like(stages[0, 0]))
     product: Array
     before: Array
     (multiplier, total), (product, before) = jax.lax.scan(compose, unit, last, unroll=8)
     node_state = product * (total / (1 - multiplier)) + before
-    updated = jnp.stack(
-        [stages[:, i] + growth[i] * node_state + offset[i] for i in range(3)], axis=1
-    )
-    return node_state, updated, multiplier
+    updated = [stages[i] + growth[i] * node_state + offset[i] for i in range(3)]
+    return node_state, jnp.stack(updated), multiplier
 
 
 def _newton(
     equation: Equation,
+    at_stages: Forcing,
     mesh: Mesh,
-    stages: Float[Array, "element 3"],
-    resolution: PeriodicResolution,
-) -> tuple[Float[Array, "element 3"], Int[Array, ""]]:
-    """Newton on the whole period until its step is small."""
+    stages: Float[Array, "3 element"],
+    tolerance: float,
+    limit: int,
+) -> tuple[Float[Array, "3 element"], Int[Array, ""]]:
+    """Newton on the whole period until its step is small.
+
+    Against a rate like a root with its sign, which turns steep where a flow
+    reverses, Newton leaps to and fro for ever. A stage whose step turns back
+    without shrinking takes half of it, and wins its full step back later.
+    """
 
     def unfinished(carry: tuple) -> Array:
-        _, step, count = carry
-        return (step > resolution.tolerance) & (count < resolution.iterations)
+        _, _, _, size, count = carry
+        return (size > tolerance) & (count < limit)
 
     def improve(carry: tuple) -> tuple:
-        current, _, count = carry
-        _, updated, _ = _periodic_step(equation, mesh, current)
-        extent = jnp.max(updated) - jnp.min(updated) + 1e-300
-        step = jnp.max(jnp.abs(updated - current)) / extent
-        return updated, step, count + 1
+        current, before, share, _, count = carry
+        _, updated, _ = _periodic_step(equation, at_stages, mesh, current)
+        step = updated - current
+        leaps = (step * before < 0) & (2 * jnp.abs(step) > jnp.abs(before))
+        share = jnp.where(leaps, share / 2, jnp.minimum(2 * share, 1))
+        size = jnp.max(jnp.abs(step)) / _extent(updated)
+        return current + share * step, step, share, size, count + 1
 
-    stages, _, count = jax.lax.while_loop(
-        unfinished, improve, (stages, jnp.asarray(jnp.inf), jnp.asarray(0))
+    start = (stages, jnp.zeros_like(stages), jnp.ones_like(stages))
+    stages, _, _, _, count = jax.lax.while_loop(
+        unfinished, improve, (*start, jnp.asarray(jnp.inf), jnp.asarray(0))
     )
     return stages, count
 
 
 def _interpolate(
-    mesh: Mesh, powers: Float[Array, "element 4"], position: Float[Array, "*grid"]
+    mesh: Mesh, powers: Float[Array, "4 element"], position: Float[Array, "*grid"]
 ) -> Float[Array, "*grid"]:
     """A piecewise cubic at positions within its mesh."""
-    element = jnp.clip(jnp.searchsorted(mesh.start, position, side="right") - 1, 0)
-    width = mesh.width[element]
-    offset = position - mesh.start[element]
-    fraction = jnp.where(width > 0, offset / jnp.where(width > 0, width, 1), 1)
-    constant, first, second, third = jnp.moveaxis(powers[element], -1, 0)
-    return ((third * fraction + second) * fraction + first) * fraction + constant
+    element, fraction = mesh.locate(position)
+    return _horner(jnp.moveaxis(powers.T[element], -1, 0), fraction)
 
 
 def _collocation_residual(
     equation: Equation,
+    at_stages: Forcing,
     mesh: Mesh,
     node_state: Float[Array, " element"],
-    stages: Float[Array, "element 3"],
+    stages: Float[Array, "3 element"],
 ) -> Float[Array, ""]:
     """Largest violation of stage equations or continuity, over the orbit's range."""
-    at_stages = equation.forcing(mesh, jnp.asarray(STAGES))
-    rise = mesh.width[:, None] * (equation.rate(at_stages, stages) @ STAGE_INTEGRALS.T)
-    stage_error = jnp.max(jnp.abs(node_state[:, None] + rise - stages))
-    closure = jnp.max(jnp.abs(jnp.roll(stages[:, 2], 1) - node_state))
-    extent = jnp.max(stages) - jnp.min(stages) + 1e-300
-    return jnp.maximum(stage_error, closure) / extent
+    rate = list(equation.rate(at_stages, stages))
+    errors = [
+        jnp.abs(node_state + mesh.width * _combine(row, rate) - stages[i])
+        for i, row in enumerate(STAGE_INTEGRALS)
+    ]
+    closure = jnp.abs(jnp.roll(stages[2], 1) - node_state)
+    return jnp.max(jnp.stack([*errors, closure])) / _extent(stages)

@@ -47,6 +47,15 @@ def basis_matrix(degree: int) -> np.ndarray:
     return matrix
 
 
+def floor_past_rounding(position: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
+    """`floor`, counting what lies a hair below a whole number as having reached it.
+
+    A compiler may compute the same position twice with different rounding; at
+    a knot, span and remainder would then come from different sides.
+    """
+    return jnp.floor(position + 1e-9)
+
+
 def knots(count: int, period: float, degree: int) -> np.ndarray:
     """Where one polynomial piece meets the next, shape (count,), within [0, period)."""
     offset = 0.0 if degree % 2 else 0.5
@@ -71,8 +80,26 @@ def evaluate_periodic(
     count = control.shape[-1]
     spacing = period / count
     position = angle / spacing + (degree + 1) / 2
-    span = jnp.floor(position)
+    span = floor_past_rounding(position)
     return evaluate_span(control, span.astype(jnp.int32), position - span, spacing, degree)
+
+
+def span_powers(
+    control: Inexact[Array, " control"], degree: int
+) -> Inexact[Array, "control powers"]:
+    """Coefficients of each span's polynomial in the span coordinate, lowest power first.
+
+    Row `i` belongs to the span that `evaluate_periodic` numbers `i` modulo the count.
+    """
+    matrix = basis_matrix(degree)
+    shifted = [jnp.roll(control, k) for k in range(degree + 1)]
+    return jnp.stack(
+        [
+            sum(float(matrix[k, power]) * shifted[k] for k in range(degree + 1))
+            for power in range(degree + 1)
+        ],
+        axis=-1,
+    )
 
 
 def evaluate_span(
@@ -88,12 +115,8 @@ def evaluate_span(
     or the start of the next, which matters to the highest derivatives.
     """
     count = control.shape[-1]
-    matrix = basis_matrix(degree)
-    neighbours = [control[(span - k) % count] for k in range(degree + 1)]
-    coefficients = [
-        sum(float(matrix[k, power]) * neighbours[k] for k in range(degree + 1))
-        for power in range(degree + 1)
-    ]
+    chosen = span_powers(control, degree)[span % count]
+    coefficients = [chosen[..., power] for power in range(degree + 1)]
     derivatives = []
     for order in range(4):
         total = jnp.zeros_like(coefficients[0])

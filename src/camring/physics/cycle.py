@@ -9,7 +9,8 @@ import equinox as eqx
 from jaxtyping import Array, Float
 
 from camring.geometry.extremes import extreme_radius
-from camring.numerics.periodic import Equation, Orbit, PeriodicResolution, solve_periodic
+from camring.numerics.equation import Equation
+from camring.numerics.periodic import Orbit, PeriodicResolution, solve_periodic
 from camring.numerics.quantity import Q
 from camring.numerics.spline import Jet
 from camring.numerics.verdict import Verdict, verdict
@@ -56,7 +57,7 @@ def chamber_between(
     fraction: Float[Array, " point"],
 ) -> tuple[Jet, Chamber]:
     """Cam and chamber at fractions of elements that no breakpoint divides."""
-    angle = start[:, None] + width[:, None] * fraction
+    angle = start + fraction[:, None] * width
     radius = motor.cam.pitch_radius_between(start, width, fraction)
     return radius, chamber_at(motor, reference, angle, radius)
 
@@ -89,6 +90,12 @@ def _forcing(parameters: tuple, start: Array, width: Array, fraction: Array) -> 
     return chamber_between(motor, reference, start, width, fraction)[1]
 
 
+def _kinks(motor: Motor, fluid: AbstractFluid, point: OperatingPoint) -> tuple[Array, ...]:
+    """States at which a law bends: the fluid's own, and the ports' where the orifice does."""
+    ports = (point.supply_pressure, point.return_pressure) if motor.orifice.bends_at_zero else ()
+    return tuple(fluid.state(pressure) for pressure in (*fluid.kinks(), *ports))
+
+
 def simulate(
     motor: Motor,
     fluid: AbstractFluid,
@@ -107,7 +114,12 @@ def simulate(
     elements = resolution.elements * pitches + motor.promised_elements()
     guess = fluid.state((point.supply_pressure + point.return_pressure) / 2)
     orbit = solve_periodic(
-        Equation((motor, fluid, point, reference), _state_rate, _forcing),
+        Equation(
+            (motor, fluid, point, reference),
+            _state_rate,
+            _forcing,
+            _kinks(motor, fluid, point),
+        ),
         breakpoints,
         motor.cam.period,
         guess,

@@ -13,7 +13,7 @@ from camring.geometry.cam import AbstractCam
 from camring.geometry.material import Material
 from camring.geometry.piston import Piston, Roller
 from camring.geometry.valve_plate import ValvePlate
-from camring.numerics.periodic import LAYER_ELEMENTS, Breakpoints
+from camring.numerics.mesh import LAYER_ELEMENTS, Breakpoints
 from camring.numerics.quantity import Q, real
 from camring.physics.fluid import AbstractFluid
 from camring.physics.friction import AbstractFriction

@@ -1,10 +1,10 @@
 """Everything the reference piston does, read off a cycle at chosen angles."""
 
 import equinox as eqx
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 from camring.numerics.quantity import Q
-from camring.numerics.spline import Jet
+from camring.numerics.spline import Jet, floor_past_rounding
 from camring.physics.contact import hertz_stress, normal_force
 from camring.physics.cycle import Cycle, chamber_at, chamber_between
 from camring.physics.force import radial_force
@@ -31,24 +31,34 @@ class PistonState(eqx.Module):
 
 
 def sample_elements(cycle: Cycle, fraction: Float[Array, " point"]) -> PistonState:
-    """The reference piston at the same fractions of every element, arrays (element, point)."""
+    """The reference piston at the same fractions of every element, arrays (point, element)."""
     mesh = cycle.orbit.mesh
     radius, chamber = chamber_between(
         cycle.motor, cycle.reference_radius, mesh.start, mesh.width, fraction
     )
-    angle = mesh.start[:, None] + mesh.width[:, None] * fraction
+    angle = mesh.at(fraction)
     return _state(cycle, angle, radius, chamber, cycle.orbit.at(fraction))
 
 
 def sample_angles(cycle: Cycle, angle: Q[Float[Array, "*grid"], "rad"]) -> PistonState:
     """The reference piston at any angles, taken modulo the cam's period."""
     mesh, period = cycle.orbit.mesh, cycle.motor.cam.period
-    first = mesh.start[0]
-    within = first + (angle - first) % period
-    state = cycle.orbit.at_positions(within)
-    radius = cycle.motor.cam.pitch_radius(within)
-    chamber = chamber_at(cycle.motor, cycle.reference_radius, within, radius)
-    return _state(cycle, angle, radius, chamber, state)
+    turns = floor_past_rounding((angle - mesh.start[0]) / period)
+    within = angle - turns * period
+    element, _ = mesh.locate(within)
+    return sample_located(cycle, element, within - mesh.start[element])
+
+
+def sample_located(
+    cycle: Cycle,
+    element: Int[Array, "*grid"],
+    offset: Q[Float[Array, "*grid"], "rad"],
+) -> PistonState:
+    """The reference piston at offsets from the starts of numbered elements."""
+    angle = cycle.orbit.mesh.start[element] + offset
+    radius = cycle.motor.cam.pitch_radius(angle)
+    chamber = chamber_at(cycle.motor, cycle.reference_radius, angle, radius)
+    return _state(cycle, angle, radius, chamber, cycle.orbit.at_offset(element, offset))
 
 
 def _state(cycle: Cycle, angle: Array, radius: Jet, chamber: Chamber, state: Array) -> PistonState:

@@ -13,14 +13,14 @@ class Resolution:
     estimate with every result.
     """
 
-    elements: int = 224
+    elements: int = 176
     refinements: int = 2
     harmonics: int = 600
 
     @classmethod
     def coarse(cls) -> "Resolution":
         """For searching: objective terms to about 1e-4."""
-        return cls(elements=112, refinements=1)
+        return cls(elements=96, refinements=1)
 
     @classmethod
     def fine(cls) -> "Resolution":
