@@ -57,7 +57,7 @@ def quadrature_samples(cycle: Cycle) -> QuadratureSamples:
     slope = cycle.orbit.slope(jnp.asarray(points)) / cycle.fluid.state_slope(
         piston.chamber_pressure
     )
-    return QuadratureSamples(piston, slope, weights[:, None] * cycle.orbit.mesh.width)
+    return QuadratureSamples(piston, slope, jnp.asarray(weights)[:, None] * cycle.orbit.mesh.width)
 
 
 def chamber_spectra(

@@ -189,7 +189,7 @@ def solve_periodic(
         finer = equidistribute(mesh, density, fixed, layer, period, elements)
         for level in frozen.kinks:
             finer = with_nodes_at(finer, crossings(mesh, powers, level))
-        stages = _interpolate(mesh, powers, finer.at(STAGES))
+        stages = _interpolate(mesh, powers, finer.at(jnp.asarray(STAGES)))
         mesh = finer
         at_stages = frozen.forcing(mesh, jnp.asarray(STAGES))
         stages, iterations = _newton(frozen, at_stages, mesh, stages, tolerance, limit)
@@ -272,7 +272,7 @@ def _stage_guess(
     """Each stage by its own backward Euler step from the element's start."""
     before = jnp.broadcast_to(nodes[:-1], (3, nodes.shape[0] - 1))
     line = before + STAGES[:, None] * jnp.diff(nodes)
-    step = STAGES[:, None] * mesh.width
+    step = jnp.asarray(STAGES)[:, None] * mesh.width
     return _implicit_solve(equation, at_stages, before, step, line, iterations=3)
 
 
