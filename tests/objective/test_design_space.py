@@ -38,7 +38,7 @@ def test_the_given_motor_is_in_the_space():
 def test_a_variable_reaches_its_bounds_and_nothing_else_moves():
     point = np.array(SPACE.locate(SYSTEM))
     place = SPACE.names.index("motor.valve_plate.supply_width")
-    for unit, width in ((0.0, 27.0), (1.0, 30.0)):
+    for unit, width in ((0.0, 26.0), (1.0, 30.0)):
         point[place] = unit
         plate = SPACE.apply(SYSTEM, point).motor.valve_plate
         assert np.degrees(plate.supply.width) == pytest.approx(width)

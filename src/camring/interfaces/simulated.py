@@ -2,7 +2,7 @@
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
@@ -99,6 +99,9 @@ def simulated(file: MotorFile, *, estimate: bool = True) -> Simulated:
         second = helper.submit(_results, file, resolution.halved()) if estimate else None
         found = cycles(system, resolution)
         outcome = outcome_of(assess(system, goal, resolution))
+        if all(int(cycle.verdict.code) == 0 for cycle in found):
+            # An undercut's infinite stress spoils the objective, not the results.
+            outcome = replace(outcome, failure=None)
         errors: tuple[dict[str, float], ...] = ()
         if second is not None:
             pairs = zip(_results(file, resolution), second.result(), strict=True)
