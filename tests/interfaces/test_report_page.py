@@ -302,3 +302,29 @@ def test_an_undercut_ring_has_gaps_and_a_sentence_and_no_false_margin(study):
     assert "some margins are unknown" in page
     for svg in drawings(page):
         ElementTree.fromstring(svg)
+
+
+def test_a_simulation_that_failed_is_still_drawn(study):
+    """Geometry stands; all that hangs on pressure is not a number."""
+    hollow = (
+        "chamber_pressure supply_flow return_flow leakage_flow contact_force contact_stress torque"
+    )
+    designs = []
+    for design in study.designs:
+        results = []
+        for result in design.results:
+            nothing = {name: np.full_like(result.waves.angle, np.nan) for name in hollow.split()}
+            results.append(
+                replace(
+                    result,
+                    waves=replace(result.waves, **nothing),
+                    metrics=dict.fromkeys(result.metrics, float("nan")),
+                    torque_amplitudes=np.full_like(result.torque_amplitudes, np.nan),
+                )
+            )
+        designs.append(replace(design, results=tuple(results)))
+    page = render(replace(study, designs=tuple(designs)))
+    read(page)
+    for svg in drawings(page):
+        ElementTree.fromstring(svg)
+    assert "NaN" not in page[: page.index("<script>")]

@@ -206,7 +206,7 @@ def _settings(facts: Mapping[str, str], records: Sequence[Record]) -> dict[str, 
 
 
 def _title(motor_file: MotorFile) -> str:
-    return motor_file.system.motor.name or motor_file.path.stem
+    return motor_file.system.motor.name or motor_file.path.stem.replace("_", " ")
 
 
 def _subtitle(design: Design) -> str:

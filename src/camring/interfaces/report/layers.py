@@ -72,6 +72,8 @@ class Rule:
     below: bool = False
 
     def draw(self, frame: Frame) -> str:
+        if not np.isfinite(self.value):
+            return ""
         colour = LIMIT if self.limit else QUIET
         style = {
             "stroke": colour,

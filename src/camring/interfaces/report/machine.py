@@ -247,9 +247,21 @@ def _turning(radius: float) -> str:
     return bow + tip
 
 
-def machine_figure(designs: Sequence[Design], duty: int) -> Figure:
-    """At most two cross-sections side by side, with one slider that turns both."""
-    shown = list(designs) if len(designs) <= 2 else [designs[0], designs[-1]]
+def _turns(result: Result) -> bool:
+    waves = result.waves
+    needed = (waves.chamber_pressure, waves.contact_force, waves.torque)
+    return all(bool(np.isfinite(values).all()) for values in needed)
+
+
+def machine_figure(designs: Sequence[Design], duty: int) -> Figure | None:
+    """At most two cross-sections side by side, with one slider that turns both.
+
+    Designs whose simulation failed have no pressure to show and are left out.
+    """
+    working = [design for design in designs if _turns(design.results[duty])]
+    if not working:
+        return None
+    shown = working if len(working) <= 2 else [working[0], working[-1]]
     sections = "".join(
         element("div", _section(design, duty, len(shown), k), class_="picture")
         for k, design in enumerate(shown)

@@ -53,9 +53,11 @@ def _by_duty(data: ReportData, content: Callable[[int], str]) -> str:
     if len(duties) == 1:
         return content(0)
     blocks = []
+    if not any(contents := [content(k) for k in range(len(duties))]):
+        return ""
     for k, duty in enumerate(duties):
         title = element("h3", escape(f"Operating point {k + 1}: {duty.name}"), class_="duty-name")
-        blocks.append(element("div", title, content(k), class_="duty", data_duty=k))
+        blocks.append(element("div", title, contents[k], class_="duty", data_duty=k))
     return "".join(blocks)
 
 

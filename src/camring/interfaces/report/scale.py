@@ -113,12 +113,14 @@ def covering(
     room = margin * (high - low)
     if room <= 1e-9 * max(abs(low), abs(high)):
         room = 0.5 * abs(high) or 1.0
-    rests = 0.0 in include
+    if low == high:
+        return Axis(label, unit, low - room, high + room, "linear", tick_count)
+    rests, nothing = 0.0 in include, 1e-6 * (high - low)
     return Axis(
         label,
         unit,
-        low if rests and low == 0 else low - room,
-        high if rests and high == 0 else high + room,
+        0.0 if rests and abs(low) <= nothing else low - room,
+        0.0 if rests and abs(high) <= nothing else high + room,
         "linear",
         tick_count,
     )

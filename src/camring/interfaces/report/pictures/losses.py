@@ -1,6 +1,7 @@
 """Where the hydraulic power goes that does not reach the shaft."""
 
 from collections.abc import Sequence
+from math import isfinite
 
 from camring.interfaces.report.chart import picture
 from camring.interfaces.report.data import Design
@@ -23,8 +24,13 @@ def balance_residual(metrics: dict[str, float]) -> float:
     return rest / metrics["input_power"]
 
 
-def loss_figure(designs: Sequence[Design], duty: int) -> Figure:
-    """The four losses of every design stacked, negative terms to the left of zero."""
+def loss_figure(designs: Sequence[Design], duty: int) -> Figure | None:
+    """The four losses of every design stacked, negative terms to the left of zero.
+
+    None when a simulation failed and there is no power to balance.
+    """
+    if not all(isfinite(balance_residual(dict(d.results[duty].metrics))) for d in designs):
+        return None
     shares = []
     for design in designs:
         metrics = design.results[duty].metrics
