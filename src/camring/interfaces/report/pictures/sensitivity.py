@@ -76,7 +76,8 @@ def _tornado(result: str, rows: Sequence[Sensitivity], count: int) -> Figure:
         *pieces,
         bars.wall(0.0),
     )
-    shown = "" if count <= len(rows) else f" The other {count - len(rows)} do next to nothing."
+    others = count - len(rows)
+    shown = {0: "", 1: " The other one does little."}.get(others, f" The other {others} do little.")
     return Figure(
         name,
         f"What moves {label}",
