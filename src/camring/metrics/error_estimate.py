@@ -6,18 +6,26 @@ import jax.numpy as jnp
 
 from camring.metrics.summary import Metrics
 
-FLOOR = 3e-6
+FACTOR = 4
+"""How many times that difference is claimed: extremes and ripples need not shrink evenly."""
+
+FLOOR = 5e-6
 """Share of a result below which two meshes may agree by chance."""
 
 
 @eqx.filter_jit
 def error_estimate(results: Metrics, halved: Metrics) -> Metrics:
-    """Absolute error of each result: what halving the mesh changes, and a floor.
+    """Absolute error of each result: several times what halving the mesh changes, and a floor.
 
     The coarser mesh is the less accurate one by far (the pressure solver is of
-    order five), so the difference is mostly its own error and overstates that
-    of the finer mesh; the floor stands for places where both happen to agree.
+    order four and more), so the difference is mostly its own error and overstates
+    that of the finer mesh. Extremes move by less regular steps, hence the factor;
+    the floor stands for places where both happen to agree. Both numbers are
+    measured: on hundreds of random motors, awkward ones among them, nothing smaller
+    holds against the independent solver (tests/honesty, docs/notes/verification.md).
     """
     return jax.tree.map(
-        lambda fine, coarse: jnp.abs(fine - coarse) + FLOOR * jnp.abs(fine), results, halved
+        lambda fine, coarse: FACTOR * jnp.abs(fine - coarse) + FLOOR * jnp.abs(fine),
+        results,
+        halved,
     )
