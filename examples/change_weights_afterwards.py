@@ -10,7 +10,7 @@ import camring
 motor = Path(__file__).with_name("wheel_motor.toml")
 with tempfile.TemporaryDirectory() as place:
     folder = Path(place) / "study"
-    finished = camring.optimise(motor, folder, budget=40)
+    finished = camring.optimise(motor, folder, budget=30)
     print(finished.validation.sentence)
 
     study = camring.open_study(folder)
