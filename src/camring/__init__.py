@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from camring.interfaces.compiled import simulate, summarise, waveforms
+    from camring.interfaces.compiled import evaluate, simulate, summarise, waveforms
     from camring.interfaces.config import MotorFile, read_motor_file
     from camring.interfaces.errors import InputError
     from camring.interfaces.optimisation import optimise, resume
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from camring.metrics.summary import Metrics
     from camring.objective.constraints import Constraints
     from camring.objective.design_space import DesignSpace
-    from camring.objective.objective import Goal, evaluate
+    from camring.objective.objective import Goal
     from camring.objective.terms import Weights
     from camring.physics.cycle import Cycle
     from camring.physics.motor import Motor
@@ -43,7 +43,7 @@ _HOMES = {
     "Study": "camring.interfaces.study",
     "System": "camring.physics.system",
     "Weights": "camring.objective.terms",
-    "evaluate": "camring.objective.objective",
+    "evaluate": "camring.interfaces.compiled",
     "open_study": "camring.interfaces.study",
     "optimise": "camring.interfaces.optimisation",
     "read_motor_file": "camring.interfaces.config",

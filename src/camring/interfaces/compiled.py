@@ -16,7 +16,7 @@ from camring.physics.cycle import Cycle
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
-# The names under which `import camring` offers them.
+# The short names are those under which `import camring` offers them.
 simulate = simulate_compiled = eqx.filter_jit(cycle.simulate)
 summarise = summarise_compiled = eqx.filter_jit(summary.summarise)
 waveforms = eqx.filter_jit(sampling.waveforms)
@@ -37,3 +37,6 @@ def assess(system: System, goal: Goal, resolution: Resolution | None = None) -> 
     found = cycles(system, resolution)
     metrics = tuple(summarise_compiled(each, goal.harmonics) for each in found)
     return _judge(system, goal, metrics, jnp.stack([each.verdict.code for each in found]))
+
+
+evaluate = assess
