@@ -8,90 +8,16 @@ rad/s, and `"2 Hz"`, which could mean either, is refused.
 """
 
 import re
-from difflib import get_close_matches
 from functools import cache
-from math import isfinite, pi
-from typing import NamedTuple
+from math import isfinite
 
-BASES = ("m", "kg", "s", "rad", "K")
+from camring.interfaces.unit_names import BASES, SCALES, Unit, UnitError, named_unit
+
+__all__ = ["UnitError", "from_si", "measured", "parse_unit", "split_quantity", "to_si"]
+
 LONGEST_TEXT = 80
 DEEPEST_NESTING = 8
 
-
-class UnitError(ValueError):
-    """A unit that does not exist or does not fit, told as the end of a sentence."""
-
-
-class Unit(NamedTuple):
-    """So many SI units with these powers of metre, kilogram, second, radian, kelvin."""
-
-    factor: float
-    powers: tuple[int, ...] = (0, 0, 0, 0, 0)
-    offset: float = 0.0  # a temperature scale's zero, K
-
-    def times(self, other: "Unit", sign: int = 1) -> "Unit":
-        powers = tuple(a + sign * b for a, b in zip(self.powers, other.powers, strict=True))
-        return Unit(self.factor * other.factor**sign, powers)
-
-    def power(self, exponent: int) -> "Unit":
-        return Unit(self.factor**exponent, tuple(exponent * p for p in self.powers))
-
-
-def _unit(factor: float, m: int = 0, kg: int = 0, s: int = 0, rad: int = 0, K: int = 0) -> Unit:
-    return Unit(factor, (m, kg, s, rad, K))
-
-
-_LENGTH, _FORCE, _PRESSURE = dict(m=1), dict(m=1, kg=1, s=-2), dict(m=-1, kg=1, s=-2)
-_ENERGY, _POWER = dict(m=2, kg=1, s=-2), dict(m=2, kg=1, s=-3)
-
-# Compared with pint's definitions in tests/interfaces/test_units.py.
-EVERYDAY: dict[str, Unit] = {
-    "m": _unit(1, **_LENGTH),
-    "mm": _unit(1e-3, **_LENGTH),
-    "cm": _unit(1e-2, **_LENGTH),
-    "dm": _unit(1e-1, **_LENGTH),
-    "um": _unit(1e-6, **_LENGTH),
-    "µm": _unit(1e-6, **_LENGTH),
-    "L": _unit(1e-3, m=3),
-    "l": _unit(1e-3, m=3),
-    "mL": _unit(1e-6, m=3),
-    "ml": _unit(1e-6, m=3),
-    "kg": _unit(1, kg=1),
-    "g": _unit(1e-3, kg=1),
-    "s": _unit(1, s=1),
-    "ms": _unit(1e-3, s=1),
-    "min": _unit(60, s=1),
-    "h": _unit(3600, s=1),
-    "Hz": _unit(1, s=-1),
-    "rad": _unit(1, rad=1),
-    "deg": _unit(pi / 180, rad=1),
-    "°": _unit(pi / 180, rad=1),
-    "rev": _unit(2 * pi, rad=1),
-    "rpm": _unit(2 * pi / 60, rad=1, s=-1),
-    "N": _unit(1, **_FORCE),
-    "kN": _unit(1e3, **_FORCE),
-    "Pa": _unit(1, **_PRESSURE),
-    "kPa": _unit(1e3, **_PRESSURE),
-    "MPa": _unit(1e6, **_PRESSURE),
-    "GPa": _unit(1e9, **_PRESSURE),
-    "mbar": _unit(1e2, **_PRESSURE),
-    "bar": _unit(1e5, **_PRESSURE),
-    "J": _unit(1, **_ENERGY),
-    "W": _unit(1, **_POWER),
-    "kW": _unit(1e3, **_POWER),
-    "cSt": _unit(1e-6, m=2, s=-1),
-    "cP": _unit(1e-3, m=-1, kg=1, s=-1),
-    "K": _unit(1, K=1),
-    "%": _unit(1e-2),
-}
-
-# Scales whose zero is not absolute zero stand alone, never in a product.
-SCALES: dict[str, Unit] = {
-    "degC": Unit(1.0, (0, 0, 0, 0, 1), 273.15),
-    "°C": Unit(1.0, (0, 0, 0, 0, 1), 273.15),
-    "degF": Unit(5 / 9, (0, 0, 0, 0, 1), 459.67 * 5 / 9),
-    "°F": Unit(5 / 9, (0, 0, 0, 0, 1), 459.67 * 5 / 9),
-}
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*", re.DOTALL)
 _TOKEN = re.compile(
@@ -241,50 +167,6 @@ def _exponent(tokens: list[tuple[str, str]], text: str) -> tuple[int, list[tuple
     if len(digits) > 2 or digits == "-":
         raise UnitError(f"has the unit {text!r}, whose exponent {digits} is beyond all use")
     return int(digits), tokens
-
-
-def named_unit(name: str) -> Unit:
-    """One unit by its name, from the table or from pint."""
-    name = name.replace("μ", "µ")  # the Greek letter for the micro sign
-    found = EVERYDAY.get(name) or _ask_pint(name)
-    if found is not None:
-        return found
-    if name in SCALES:
-        raise UnitError(f"uses {name!r} in a product, where a temperature scale has no meaning")
-    close = get_close_matches(name, EVERYDAY, n=1, cutoff=0.5)
-    if not close:
-        close = [known for known in EVERYDAY if known.lower() == name.lower()]
-    hint = f" (did you mean {close[0]!r}?)" if close else ""
-    raise UnitError(f"has the unknown unit {name!r}{hint}")
-
-
-@cache
-def _pint_registry():  # type: ignore[no-untyped-def]  # pint stays unimported until needed
-    import pint
-
-    return pint.UnitRegistry()
-
-
-@cache
-def _ask_pint(name: str) -> Unit | None:
-    """The unit from pint's definitions; None when pint has none that we can use."""
-    registry = _pint_registry()
-    roots = {"meter": "m", "gram": "g", "kilogram": "kg", "second": "s", "radian": "rad"}
-    roots["kelvin"] = "K"
-    try:
-        one = registry.Quantity(1.0, name).to_root_units()
-        zero = registry.Quantity(0.0, name).to_root_units()
-        powers = dict(one.units._units)
-        parts = [(roots[base], int(power)) for base, power in powers.items()]
-        exact = all(float(power).is_integer() for power in powers.values())
-    except Exception:  # pint raises errors of a dozen kinds; each means "not a unit for us"
-        return None
-    if not exact or zero.magnitude != 0:
-        return None
-    unit = Unit(float(one.magnitude))
-    for base, power in parts:
-        unit = unit.times(EVERYDAY[base].power(power))
-    return unit
 
 
 _MEASURED = {
