@@ -85,13 +85,13 @@ def test_only_the_highest_derivative_jumps_and_only_at_the_knots(degree):
     inside = cam.pitch_radius_between(edges[:-1], np.diff(edges), np.array([0.0, 0.3, 1.0]))
     spacing = period / count
     for order in range(min(degree, 4)):
-        end_of_one, start_of_next = inside[order][:, 2], np.roll(inside[order][:, 0], -1)
+        end_of_one, start_of_next = inside[order][2], np.roll(inside[order][0], -1)
         np.testing.assert_allclose(end_of_one, start_of_next, atol=1e-11 / spacing**order)
     if degree == 3:
-        assert np.abs(inside.third[:, 2] - np.roll(inside.third[:, 0], -1)).min() > 1e-3
+        assert np.abs(inside.third[2] - np.roll(inside.third[0], -1)).min() > 1e-3
     middle = edges[:-1] + 0.3 * np.diff(edges)
     for between, anywhere in zip(inside, cam.pitch_radius(middle), strict=True):
-        np.testing.assert_allclose(between[:, 1], anywhere, rtol=1e-11, atol=1e-11)
+        np.testing.assert_allclose(between[1], anywhere, rtol=1e-11, atol=1e-11)
 
 
 @pytest.mark.parametrize("degree", DEGREES)
