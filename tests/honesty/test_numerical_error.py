@@ -16,8 +16,8 @@ SEEDS = range(8)
 def understated(cases, truths):
     """Results whose true error is larger than the reported one, as sentences."""
     cycles, metrics = run_all(cases)
-    _, halved = run_all(cases, Resolution().halved())
-    reported = error_estimate(metrics, halved)
+    _, coarser = run_all(cases, Resolution().second_look())
+    reported = error_estimate(metrics, coarser)
     for index, truth in enumerate(truths):
         if int(cycles.verdict.code[index]) != 0:
             continue  # refused: nothing is claimed
@@ -49,8 +49,8 @@ def test_the_reported_error_is_not_absurdly_large_either():
     """An estimate that says one would never understate and never help."""
     cases = [sound_case(seed, STRUCTURES[0]) for seed in SEEDS]
     _, metrics = run_all(cases)
-    _, halved = run_all(cases, Resolution().halved())
-    reported = error_estimate(metrics, halved)
+    _, coarser = run_all(cases, Resolution().second_look())
+    reported = error_estimate(metrics, coarser)
     for name in ("mean_torque", "torque_ripple", "efficiency", "max_pressure", "supply_flow"):
         share = np.asarray(getattr(reported, name)) / np.abs(np.asarray(getattr(metrics, name)))
-        assert np.median(share) < 1e-5, name
+        assert np.median(share) < 5e-5, name

@@ -90,13 +90,13 @@ def simulated(file: MotorFile, *, estimate: bool = True) -> Simulated:
     Parameters
     ----------
     estimate
-        Whether to look a second time at half the resolution for the error.
+        Whether to look a second time at a coarser resolution for the error.
     """
     system, goal, resolution = file.system, file.goal, Resolution()
     # Compiling both programs is nearly all the work of a first run; two threads share it.
     helper = ThreadPoolExecutor(max_workers=1)
     try:
-        second = helper.submit(_results, file, resolution.halved()) if estimate else None
+        second = helper.submit(_results, file, resolution.second_look()) if estimate else None
         found = cycles(system, resolution)
         outcome = outcome_of(assess(system, goal, resolution))
         if all(int(cycle.verdict.code) == 0 for cycle in found):

@@ -13,7 +13,7 @@ class Resolution:
     estimate with every result.
     """
 
-    elements: int = 224
+    elements: int = 320
     refinements: int = 2
     harmonics: int = 600
 
