@@ -18,10 +18,10 @@ def error_estimate(results: Metrics, coarser: Metrics) -> Metrics:
     """Absolute error of each result: several times what a coarser mesh changes, and a floor.
 
     The coarser mesh (`Resolution.second_look`) has about four times the error, so
-    the difference is mostly its own and overstates that of the finer mesh. Extremes move by less regular steps, hence the factor;
-    the floor stands for places where both happen to agree. Both numbers are
-    measured: on hundreds of random motors, awkward ones among them, nothing smaller
-    holds against the independent solver (tests/honesty, docs/notes/verification.md).
+    the difference is mostly its own and overstates that of the finer mesh. Extremes
+    move by less regular steps, hence the factor; the floor stands for places where
+    both happen to agree. Both numbers are measured: against the independent solver,
+    on sound and on awkward random motors (docs/notes/verification.md).
     """
     return jax.tree.map(
         lambda fine, coarse: FACTOR * jnp.abs(fine - coarse) + FLOOR * jnp.abs(fine),
