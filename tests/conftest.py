@@ -41,7 +41,7 @@ def pytest_unconfigure(config):
 
 KNOWN_FAILURES = {
     "test_a_sine_cam_ripples_as_the_rectified_sine_says": "sampled at too few angles for 3e-7",
-    "test_sound_motors_are_as_accurate_as_promised": "1.3e-5 to 1.8e-5 in smallest force, a few seeds",
+    "test_sound_motors_are_as_accurate_as_promised": "1.3e-5 to 1.8e-5 in smallest force",
     "test_the_error_of_": "estimator refitted, not rerun at the present mesh",
     "test_a_stiff_lossless_motor": "0.99798 where 0.998 is asked",
     "test_hard_cases_are_sound_answers": "racing motor 1.7e-5",
