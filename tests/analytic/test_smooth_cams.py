@@ -75,7 +75,7 @@ def test_a_sine_cam_ripples_as_the_rectified_sine_says(pistons, lobes, waves):
     cam = RadialCam(control, repeats=lobes, degree=5)
     phases = pistons // gcd(pistons, lobes)
     assert waves == (phases if phases % 2 == 0 else 2 * phases)
-    angle = 2 * pi / lobes * np.arange(40_000) / 40_000
+    angle = 2 * pi / lobes * np.arange(160_000) / 160_000
     total = geometric_sum(cam, pistons, angle)
     peak_to_peak = np.ptp(total) / total.mean()
     assert peak_to_peak == pytest.approx(pi / waves * tan(pi / (2 * waves)), rel=2e-6)

@@ -37,6 +37,7 @@ from jaxtyping import Array, Float, Int
 
 from camring.numerics.crossing import crossings, with_nodes_at
 from camring.numerics.equation import Equation, Forcing
+from camring.numerics.first_guess import backward_euler, stage_guess
 from camring.numerics.mesh import (
     Breakpoints,
     Mesh,
@@ -169,13 +170,13 @@ def solve_periodic(
     elements = resolution.elements
 
     mesh = graded_mesh(fixed.position, period)
-    nodes = _backward_euler(frozen, mesh, stop_gradient(guess), sweeps=2)
+    nodes = backward_euler(frozen, mesh, stop_gradient(guess), sweeps=2)
     density = curvature_density(mesh, nodes, period)
     layer = _layer_width(frozen, mesh, nodes[:-1], period, fixed)
     mesh = equidistribute(mesh, density, fixed, layer, period, elements)
-    nodes = _backward_euler(frozen, mesh, nodes[-1], sweeps=1)
+    nodes = backward_euler(frozen, mesh, nodes[-1], sweeps=1)
     at_stages = frozen.forcing(mesh, jnp.asarray(STAGES))
-    stages = _stage_guess(frozen, at_stages, mesh, nodes)
+    stages = stage_guess(frozen, at_stages, mesh, nodes, STAGES)
     tolerances = [resolution.rough_tolerance] * resolution.refinements + [resolution.tolerance]
     limit = resolution.iterations
     stages, iterations = _newton(frozen, at_stages, mesh, stages, tolerances[0], limit)
@@ -220,60 +221,6 @@ def _layer_width(
     at_start = jax.tree.map(lambda leaf: leaf[0], equation.forcing(behind, jnp.zeros(1)))
     _, slope = equation.rate_and_slope(at_start, node_state[first])
     return 1 / jnp.maximum(jnp.abs(slope), 1 / period)
-
-
-# --- first guess ----------------------------------------------------------
-
-
-def _implicit_solve(
-    equation: Equation,
-    forcing: Forcing,
-    before: Array,
-    step: Array,
-    guess: Array,
-    iterations: int,
-) -> Array:
-    """`y = before + step * rate(y)` by Newton kept inside a bracket that shrinks."""
-    low = jnp.full_like(guess, -jnp.inf)
-    high = jnp.full_like(guess, jnp.inf)
-    state = guess
-    for _ in range(iterations):
-        value, slope = equation.rate_and_slope(forcing, state)
-        excess = state - before - step * value
-        low = jnp.where(excess < 0, state, low)
-        high = jnp.where(excess > 0, state, high)
-        newton = state - excess / jnp.maximum(1 - step * slope, 1.0)
-        middle = (low + high) / 2
-        outside = (newton <= low) | (newton >= high)
-        state = jnp.where(outside & jnp.isfinite(middle), middle, newton)
-    return state
-
-
-def _backward_euler(
-    equation: Equation, mesh: Mesh, begin: Float[Array, ""], sweeps: int
-) -> Float[Array, " node"]:
-    """Node states of one period after `sweeps` periods from `begin`: first order, robust."""
-    at_end = jax.tree.map(lambda leaf: leaf[0], equation.forcing(mesh, jnp.ones(1)))
-
-    def advance(state: Array, element: tuple[Forcing, Array]) -> tuple[Array, Array]:
-        end_forcing, step = element
-        after = _implicit_solve(equation, end_forcing, state, step, state, iterations=5)
-        return after, after
-
-    for _ in range(sweeps):
-        first = begin
-        begin, after = jax.lax.scan(advance, begin, (at_end, mesh.width))
-    return jnp.concatenate([first[None], after])
-
-
-def _stage_guess(
-    equation: Equation, at_stages: Forcing, mesh: Mesh, nodes: Float[Array, " node"]
-) -> Float[Array, "3 element"]:
-    """Each stage by its own backward Euler step from the element's start."""
-    before = jnp.broadcast_to(nodes[:-1], (3, nodes.shape[0] - 1))
-    line = before + STAGES[:, None] * jnp.diff(nodes)
-    step = jnp.asarray(STAGES)[:, None] * mesh.width
-    return _implicit_solve(equation, at_stages, before, step, line, iterations=3)
 
 
 # --- collocation ----------------------------------------------------------
