@@ -75,7 +75,7 @@ class Structure:
 
 STRUCTURES = (
     Structure("radial", 8, 6, 16),
-    Structure("ring", 9, 4, 10, reference="mean"),
+    Structure("ring", 6, 4, 10, reference="mean"),
     Structure("radial", 5, 9, 12, degree=5),
     Structure("planar", 6, 4, 12, degree=4),
 )

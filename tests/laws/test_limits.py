@@ -33,12 +33,15 @@ def idealised(case, stiffness):
 
 
 def test_a_stiff_lossless_motor_gives_the_ideal_torque_and_the_rippling_sine():
-    """Mean torque dp V_D / (2 pi); ripple that of the rectified sine, K = 4."""
-    case = idealised(sound_case(0, STRUCTURES[0]), 2e10)
+    """Mean torque dp V_D / (2 pi); ripple that of the rectified sine, K = 4.
+
+    What remains is compression, as 1/modulus: 0.2 % at 20 GPa, a tenth of it here.
+    """
+    case = idealised(sound_case(0, STRUCTURES[0]), 2e11)
     _, metrics = run_all([case])
-    assert float(metrics.hydromechanical_efficiency[0]) == pytest.approx(1, abs=2e-3)
-    assert float(metrics.volumetric_efficiency[0]) == pytest.approx(1, abs=2e-3)
-    assert float(metrics.efficiency[0]) == pytest.approx(1, abs=2e-3)
+    assert float(metrics.hydromechanical_efficiency[0]) == pytest.approx(1, abs=3e-4)
+    assert float(metrics.volumetric_efficiency[0]) == pytest.approx(1, abs=3e-4)
+    assert float(metrics.efficiency[0]) == pytest.approx(1, abs=4e-4)
     true_rms = sqrt(2) * float(metrics.torque_ripple[0])
     assert true_rms == pytest.approx(0.09772081, rel=0.02)
 

@@ -8,7 +8,7 @@ from both_roads import RESULTS, run_all, single, waveforms_of
 from motors import STRUCTURES, sound_case
 
 from camring.geometry.contour import undercut_factor
-from camring.physics.cycle import chamber_at
+from camring.physics.chamber import chamber_at
 from camring.physics.force import radial_force
 from camring.physics.pressure import pressure_slope
 

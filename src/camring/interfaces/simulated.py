@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 # Results that a ripple or a margin makes small: their error counts beside another result.
 _BESIDE = {
+    "line_loss": "input_power",
+    "supply_pressure_swing": "max_pressure",
     "throttling_loss": "input_power",
     "leakage_loss": "input_power",
     "friction_loss": "input_power",

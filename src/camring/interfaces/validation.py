@@ -30,16 +30,29 @@ GIVEN, BEST = "given", "best"
 AGREEMENT = 1e-4  # of a result, or of what it is small beside
 SOLVER_TOLERANCE = 1e-9  # of the independent solver; its results are good to about 1e-7
 
-# A loss or a least pressure may be near zero; it is then small beside this.
+# These may be near zero, and are then judged against what they are small beside: a
+# loss against the power it is taken from, a swing beyond the ports against the pressure.
 BESIDE = {
+    "line_loss": "input_power",
     "throttling_loss": "input_power",
     "leakage_loss": "input_power",
     "friction_loss": "input_power",
     "compression_loss": "input_power",
     "min_pressure": "max_pressure",
-    "torque_ripple_peak_to_peak": None,
-    "torque_ripple": None,
-    "flow_ripple": None,
+    "pressure_overshoot": "max_pressure",
+    "pressure_undershoot": "max_pressure",
+    "supply_pressure_swing": "max_pressure",
+    "vapour_margin": "max_pressure",
+    "air_release_margin": "max_pressure",
+}
+RIPPLES = {
+    "torque_ripple",
+    "torque_ripple_true_rms",
+    "torque_ripple_peak_to_peak",
+    "flow_ripple",
+    "flow_ripple_true_rms",
+    "pressure_ripple",
+    "pressure_ripple_true_rms",
 }
 RIPPLE_SCALE = 0.01  # a ripple below one per cent is judged as if it were one per cent
 
@@ -189,10 +202,9 @@ def _agreement(claimed: Outcome, seen: Outcome, whose: str) -> Check:
 
 
 def _smallest_scale(name: str, results: Mapping[str, float]) -> float:
-    if name not in BESIDE:
-        return 1e-300
-    beside = BESIDE[name]
-    return RIPPLE_SCALE if beside is None else abs(results[beside])
+    if name in RIPPLES:
+        return RIPPLE_SCALE
+    return abs(results[BESIDE[name]]) if name in BESIDE else 1e-300
 
 
 def _view(outcome: Outcome) -> dict[str, Any]:

@@ -37,6 +37,7 @@ WAVEFORMS: Mapping[str, tuple[str, str]] = {
     "jerk": ("m s-3", "piston jerk"),
     "volume": ("m3", "chamber volume"),
     "chamber_pressure": ("Pa", "chamber pressure, absolute"),
+    "gallery_pressure": ("Pa", "pressure in the supply manifold, absolute; if there is one"),
     "supply_flow": ("m3 s-1", "flow into the chamber from the supply port"),
     "return_flow": ("m3 s-1", "flow into the chamber from the return port"),
     "leakage_flow": ("m3 s-1", "leakage out of the chamber"),
@@ -88,6 +89,7 @@ def waveform_dataset(
             {"units": unit, "long_name": long_name},
         )
         for name, (unit, long_name) in WAVEFORMS.items()
+        if all(getattr(wave, name) is not None for wave in waves)
     }
     duties = {
         name: (
@@ -127,7 +129,7 @@ def write_waveforms(
     place = Path(path)
     _require_replaceable(place)
     dataset = waveform_dataset(system, cycles, source=source, samples=samples)
-    packed = {name: {"zlib": True, "complevel": 4} for name in WAVEFORMS}
+    packed = {name: {"zlib": True, "complevel": 4} for name in dataset.data_vars}
     unfinished: Path | None = None
     try:
         handle, name = tempfile.mkstemp(prefix=f".{place.name}.", dir=place.parent)

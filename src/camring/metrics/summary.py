@@ -41,6 +41,7 @@ class Metrics(eqx.Module):
     hydromechanical_efficiency: Q[Float[Array, ""], "1"]
     input_power: Q[Float[Array, ""], "W"]
     output_power: Q[Float[Array, ""], "W"]
+    line_loss: Q[Float[Array, ""], "W"]
     throttling_loss: Q[Float[Array, ""], "W"]
     leakage_loss: Q[Float[Array, ""], "W"]
     friction_loss: Q[Float[Array, ""], "W"]
@@ -48,6 +49,7 @@ class Metrics(eqx.Module):
     power_residual: Q[Float[Array, ""], "1"]
     min_pressure: Q[Float[Array, ""], "Pa"]
     max_pressure: Q[Float[Array, ""], "Pa"]
+    supply_pressure_swing: Q[Float[Array, ""], "Pa"]
     pressure_overshoot: Q[Float[Array, ""], "Pa"]
     pressure_undershoot: Q[Float[Array, ""], "Pa"]
     air_release_margin: Q[Float[Array, ""], "Pa"]
@@ -119,6 +121,7 @@ def summarise(cycle: Cycle, highest_order: int = 600) -> Metrics:
         hydromechanical_efficiency=mean_torque / ideal_torque,
         input_power=power.input_power,
         output_power=power.output_power,
+        line_loss=power.line_loss,
         throttling_loss=power.throttling_loss,
         leakage_loss=power.leakage_loss,
         friction_loss=power.friction_loss,
@@ -126,6 +129,7 @@ def summarise(cycle: Cycle, highest_order: int = 600) -> Metrics:
         power_residual=power.residual,
         min_pressure=least_pressure,
         max_pressure=most_pressure,
+        supply_pressure_swing=maximum(corners.supply_pressure) - minimum(corners.supply_pressure),
         pressure_overshoot=jnp.maximum(most_pressure - point.supply_pressure, 0),
         pressure_undershoot=jnp.maximum(point.return_pressure - least_pressure, 0),
         air_release_margin=starved.air_release_margin,

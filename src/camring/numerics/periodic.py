@@ -7,8 +7,7 @@ of periodicity closes the linear system. No revolution is marched to decay.
 
 Method
 ------
-Radau IIA with three stages, order 5, L-stable, stiffly accurate (Ehle 1969;
-Hairer and Wanner 1996, section IV.5). In each element the linearised stage
+Radau IIA with three stages (`radau.py`). In each element the linearised stage
 equations are a 3 x 3 system; eliminating the stages leaves
 `y[k+1] = growth[k] y[k] + offset[k]`, a cyclic recurrence whose product of
 growths is the Floquet multiplier of the orbit, so the periodic solve costs one
@@ -47,22 +46,14 @@ from camring.numerics.mesh import (
     fourth_derivative_density,
     graded_mesh,
 )
-
-STAGES = np.array([(4 - 6**0.5) / 10, (4 + 6**0.5) / 10, 1.0])
-"""Radau points of an element of unit width."""
-
-
-def _stage_integrals() -> np.ndarray:
-    """Integrals from 0 to each stage of the polynomials that interpolate the stages."""
-    powers = np.arange(3)
-    integrated = STAGES[:, None] ** (powers + 1) / (powers + 1)
-    return integrated @ np.linalg.inv(STAGES[:, None] ** powers)
-
-
-STAGE_INTEGRALS = _stage_integrals()
-"""The Butcher matrix; its last row holds the quadrature weights."""
-
-_TO_POWERS = np.linalg.inv(np.vander(np.concatenate([[0.0], STAGES]), 4, increasing=True))
+from camring.numerics.radau import (
+    STAGE_INTEGRALS,
+    STAGES,
+    combine,
+    element_powers,
+    horner,
+    solve_stages,
+)
 
 
 class PeriodicResolution(NamedTuple):
@@ -102,12 +93,12 @@ class Orbit(eqx.Module):
 
     def at(self, fraction: Float[Array, " point"]) -> Float[Array, "point element"]:
         """State at the same fractions of every element."""
-        return _horner(self.coefficients[:, None, :], fraction[:, None])
+        return horner(self.coefficients[:, None, :], fraction[:, None])
 
     def slope(self, fraction: Float[Array, " point"]) -> Float[Array, "point element"]:
         """Derivative of the state by position, at fractions of every element."""
         derivative = self.coefficients[1:] * np.arange(1, 4)[:, None]
-        rise = _horner(derivative[:, None, :], fraction[:, None])
+        rise = horner(derivative[:, None, :], fraction[:, None])
         width = self.mesh.width
         return jnp.where(width > 0, rise / jnp.where(width > 0, width, 1), 0)
 
@@ -117,30 +108,7 @@ class Orbit(eqx.Module):
         """State at offsets from the starts of numbered elements."""
         width = self.mesh.width[element]
         fraction = jnp.where(width > 0, offset / jnp.where(width > 0, width, 1), 1)
-        return _horner(jnp.moveaxis(self.coefficients.T[element], -1, 0), fraction)
-
-
-def element_powers(
-    node_state: Float[Array, " element"], stage_state: Float[Array, "3 element"]
-) -> Float[Array, "4 element"]:
-    """Coefficients of the cubic through an element's start and its three stages."""
-    known = [node_state, *stage_state]
-    return jnp.stack([_combine(row, known) for row in _TO_POWERS])
-
-
-def _combine(factors: np.ndarray, arrays: list[Array]) -> Array:
-    """A short linear combination, written out so that it fuses with what is around it."""
-    total = float(factors[0]) * arrays[0]
-    for factor, array in zip(factors[1:], arrays[1:], strict=True):
-        total = total + float(factor) * array
-    return total
-
-
-def _horner(powers: Array, fraction: Array) -> Array:
-    total = powers[-1]
-    for coefficient in powers[-2::-1]:
-        total = total * fraction + coefficient
-    return total
+        return horner(jnp.moveaxis(self.coefficients.T[element], -1, 0), fraction)
 
 
 def solve_periodic(
@@ -223,24 +191,6 @@ def _layer_width(
     return 1 / jnp.maximum(jnp.abs(slope), 1 / period)
 
 
-# --- collocation ----------------------------------------------------------
-
-
-def _solve_stages(matrix: list[list[Array]], *right_sides: list[Array]) -> tuple[list[Array], ...]:
-    """Cramer's rule for the 3 x 3 stage systems of all elements at once."""
-    (a, b, c), (d, e, f), (g, h, i) = matrix
-    cofactors = [
-        [e * i - f * h, c * h - b * i, b * f - c * e],
-        [f * g - d * i, a * i - c * g, c * d - a * f],
-        [d * h - e * g, b * g - a * h, a * e - b * d],
-    ]
-    scale = 1 / (a * cofactors[0][0] + b * cofactors[1][0] + c * cofactors[2][0])
-    return tuple(
-        [scale * (row[0] * right[0] + row[1] * right[1] + row[2] * right[2]) for row in cofactors]
-        for right in right_sides
-    )
-
-
 def _periodic_step(
     equation: Equation, at_stages: Forcing, mesh: Mesh, stages: Float[Array, "3 element"]
 ) -> tuple[Float[Array, " element"], Float[Array, "3 element"], Float[Array, ""]]:
@@ -251,14 +201,14 @@ def _periodic_step(
     value, slope = equation.rate_and_slope(at_stages, stages)
     slope = stop_gradient(slope)
     defect = [
-        mesh.width * _combine(row, list(value)) - stages[i] for i, row in enumerate(STAGE_INTEGRALS)
+        mesh.width * combine(row, list(value)) - stages[i] for i, row in enumerate(STAGE_INTEGRALS)
     ]
     step = stop_gradient(mesh.width)
     matrix = [
         [float(i == j) - step * float(STAGE_INTEGRALS[i, j]) * slope[j] for j in range(3)]
         for i in range(3)
     ]
-    growth, offset = _solve_stages(matrix, [jnp.ones_like(step)] * 3, defect)
+    growth, offset = solve_stages(matrix, [jnp.ones_like(step)] * 3, defect)
 
     def compose(so_far: tuple, element: tuple) -> tuple:
         product, total = so_far
@@ -316,7 +266,7 @@ def _interpolate(
 ) -> Float[Array, "*grid"]:
     """A piecewise cubic at positions within its mesh."""
     element, fraction = mesh.locate(position)
-    return _horner(jnp.moveaxis(powers.T[element], -1, 0), fraction)
+    return horner(jnp.moveaxis(powers.T[element], -1, 0), fraction)
 
 
 def _collocation_residual(
@@ -329,7 +279,7 @@ def _collocation_residual(
     """Largest violation of stage equations or continuity, over the orbit's range."""
     rate = list(equation.rate(at_stages, stages))
     errors = [
-        jnp.abs(node_state + mesh.width * _combine(row, rate) - stages[i])
+        jnp.abs(node_state + mesh.width * combine(row, rate) - stages[i])
         for i, row in enumerate(STAGE_INTEGRALS)
     ]
     closure = jnp.abs(jnp.roll(stages[2], 1) - node_state)

@@ -1,27 +1,30 @@
 """One motor at one operating point, over one period of its cam.
 
-With constant port pressures every chamber runs through the same orbit, so one
-reference piston gives all (model.md section 1). `simulate` finds its periodic
+Every chamber runs through the same orbit, so one reference piston gives all
+(model.md section 1); with a manifold they also meet in the pressure before it. `simulate` finds its periodic
 pressure; `piston_state.py` and `waveforms.py` read the rest off the result.
 """
 
 import equinox as eqx
+import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.geometry.extremes import extreme_radius
 from camring.numerics.equation import Equation
 from camring.numerics.periodic import Orbit, PeriodicResolution, solve_periodic
 from camring.numerics.quantity import Q
-from camring.numerics.spline import Jet
+from camring.numerics.radau import STAGE_INTEGRALS, STAGES
 from camring.numerics.verdict import Verdict, verdict
+from camring.physics.chamber import Chamber, chamber_between
 from camring.physics.fluid import AbstractFluid
+from camring.physics.manifold import at_supply, expected_pressure, solve_with_manifold
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
-from camring.physics.pressure import Chamber, pressure_slope
+from camring.physics.pressure import exchange_rate, pressure_slope
 from camring.physics.resolution import Resolution
 
 CONVERGED_RESIDUAL = 1e-7
-UNIQUE_MARGIN = 1e-9
+UNIQUE_MARGIN = 1e-9  # of the oil in a chamber, renewed in a period
 
 
 class Cycle(eqx.Module):
@@ -32,6 +35,8 @@ class Cycle(eqx.Module):
     point: OperatingPoint
     reference_radius: Q[Float[Array, ""], "m"]
     orbit: Orbit
+    gallery: Orbit | None
+    """State of the oil before the supply windows, on the same mesh; None without a manifold."""
     verdict: Verdict
 
     @property
@@ -47,35 +52,6 @@ def reference_radius(motor: Motor) -> Q[Float[Array, ""], "m"]:
     if motor.reference == "mean":
         return motor.cam.mean_radius()
     return extreme_radius(motor.cam, -1)
-
-
-def chamber_between(
-    motor: Motor,
-    reference: Q[Float[Array, ""], "m"],
-    start: Q[Float[Array, " element"], "rad"],
-    width: Q[Float[Array, " element"], "rad"],
-    fraction: Float[Array, " point"],
-) -> tuple[Jet, Chamber]:
-    """Cam and chamber at fractions of elements that no breakpoint divides."""
-    angle = start + fraction[:, None] * width
-    radius = motor.cam.pitch_radius_between(start, width, fraction)
-    return radius, chamber_at(motor, reference, angle, radius)
-
-
-def chamber_at(
-    motor: Motor,
-    reference: Q[Float[Array, ""], "m"],
-    angle: Q[Float[Array, "*grid"], "rad"],
-    radius: Jet,
-) -> Chamber:
-    """Openings and volume of the chamber whose piston stands at each angle."""
-    plate, area = motor.valve_plate, motor.piston.area
-    return Chamber(
-        plate.port_area * plate.opening(plate.supply, angle),
-        plate.port_area * plate.opening(plate.return_, angle),
-        motor.dead_volume + area * (radius.value - reference),
-        area * radius.first,
-    )
 
 
 def _state_rate(parameters: tuple, chamber: Chamber, state: Array) -> Array:
@@ -96,6 +72,23 @@ def _kinks(motor: Motor, fluid: AbstractFluid, point: OperatingPoint) -> tuple[A
     return tuple(fluid.state(pressure) for pressure in (*fluid.kinks(), *ports))
 
 
+def _exchange(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    reference: Q[Float[Array, ""], "m"],
+    orbit: Orbit,
+) -> Float[Array, ""]:
+    """How often in a period the flows renew a chamber's oil; without any, any amount is right."""
+    between_ports = (point.supply_pressure + point.return_pressure) / 2
+    found = fluid.pressure(orbit.stage_state)
+    pressure = jnp.where(jnp.isfinite(found), found, between_ports)
+    start, width = orbit.mesh.start, orbit.mesh.width
+    _, chamber = chamber_between(motor, reference, start, width, jnp.asarray(STAGES))
+    rate = exchange_rate(motor, fluid, point, chamber, pressure)
+    return jnp.asarray(STAGE_INTEGRALS[-1]) @ rate @ width
+
+
 def simulate(
     motor: Motor,
     fluid: AbstractFluid,
@@ -113,25 +106,36 @@ def simulate(
     pitches = motor.lobes // motor.cam.repeats
     elements = resolution.elements * pitches + motor.promised_elements()
     guess = fluid.state((point.supply_pressure + point.return_pressure) / 2)
-    orbit = solve_periodic(
-        Equation(
-            (motor, fluid, point, reference),
-            _state_rate,
-            _forcing,
-            _kinks(motor, fluid, point),
-        ),
-        breakpoints,
-        motor.cam.period,
-        guess,
-        PeriodicResolution(elements, resolution.refinements),
-    )
+
+    def orbit_at(held: OperatingPoint) -> Orbit:
+        """With both port pressures constant."""
+        return solve_periodic(
+            Equation(
+                (motor, fluid, held, reference),
+                _state_rate,
+                _forcing,
+                _kinks(motor, fluid, held),
+            ),
+            breakpoints,
+            motor.cam.period,
+            guess,
+            PeriodicResolution(elements, resolution.refinements),
+        )
+
+    if motor.manifold is None:
+        orbit, gallery, seen = orbit_at(point), None, point
+    else:
+        held = expected_pressure(motor, point)
+        orbit = orbit_at(at_supply(point, held))
+        orbit, gallery = solve_with_manifold(motor, fluid, point, reference, orbit, held)
+        seen = at_supply(point, fluid.pressure(gallery.stage_state))
     least_volume = motor.dead_volume + motor.piston.area * (
         extreme_radius(motor.cam, -1) - reference
     )
-    unique = orbit.multiplier < 1 - UNIQUE_MARGIN
+    unique = _exchange(motor, fluid, seen, reference, orbit) > UNIQUE_MARGIN
     outcome = verdict(
         chamber_volume_not_positive=~(least_volume > 0),
         orbit_not_unique=~unique,
         not_converged=unique & ~(orbit.residual < CONVERGED_RESIDUAL),
     )
-    return Cycle(motor, fluid, point, reference, orbit, outcome)
+    return Cycle(motor, fluid, point, reference, orbit, gallery, outcome)

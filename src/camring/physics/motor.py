@@ -17,6 +17,7 @@ from camring.numerics.mesh import LAYER_ELEMENTS, Breakpoints
 from camring.numerics.quantity import Q, real
 from camring.physics.fluid import AbstractFluid
 from camring.physics.friction import AbstractFriction
+from camring.physics.gallery import Manifold
 from camring.physics.gap import PistonGap
 from camring.physics.leakage import AbstractLeakage
 from camring.physics.orifice import AbstractOrifice
@@ -43,6 +44,8 @@ class Motor(eqx.Module):
     leakage: AbstractLeakage
     friction: AbstractFriction
     gap: PistonGap | None = None
+    manifold: Manifold | None = None
+    """None where the supply windows see the set pressure itself."""
     given_reference_radius: Q[Float[Array, ""], "m"] = eqx.field(
         converter=real, default=float("nan")
     )
@@ -53,8 +56,11 @@ class Motor(eqx.Module):
 
     @property
     def distinct_phases(self) -> int:
-        """Different places on a lobe at which pistons stand at one instant: Np / gcd."""
-        return self.pistons // gcd(self.pistons, self.lobes)
+        """Different places in a cam period at which pistons stand at one instant.
+
+        `Np / gcd(Np, NL)` when all lobes are alike, every piston's own on a free ring.
+        """
+        return self.pistons // gcd(self.pistons, self.cam.repeats)
 
     @property
     def surviving_order(self) -> int:

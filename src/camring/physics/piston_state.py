@@ -1,14 +1,17 @@
 """Everything the reference piston does, read off a cycle at chosen angles."""
 
 import equinox as eqx
+import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from camring.numerics.quantity import Q
 from camring.numerics.spline import Jet, floor_past_rounding
+from camring.physics.chamber import Chamber, chamber_at, chamber_between
 from camring.physics.contact import hertz_stress, normal_force
-from camring.physics.cycle import Cycle, chamber_at, chamber_between
+from camring.physics.cycle import Cycle
 from camring.physics.force import radial_force
-from camring.physics.pressure import Chamber, port_flows
+from camring.physics.manifold import at_supply
+from camring.physics.pressure import port_flows
 from camring.physics.torque import torque_by_virtual_work
 
 
@@ -20,6 +23,8 @@ class PistonState(eqx.Module):
     chamber: Chamber
     lift: Q[Float[Array, "*grid"], "m"]
     chamber_pressure: Q[Float[Array, "*grid"], "Pa"]
+    supply_pressure: Q[Float[Array, "*grid"], "Pa"]
+    """Before the supply windows; the operating point's where there is no manifold."""
     supply_flow: Q[Float[Array, "*grid"], "amount/s"]
     return_flow: Q[Float[Array, "*grid"], "amount/s"]
     leakage_flow: Q[Float[Array, "*grid"], "amount/s"]
@@ -37,7 +42,8 @@ def sample_elements(cycle: Cycle, fraction: Float[Array, " point"]) -> PistonSta
         cycle.motor, cycle.reference_radius, mesh.start, mesh.width, fraction
     )
     angle = mesh.at(fraction)
-    return _state(cycle, angle, radius, chamber, cycle.orbit.at(fraction))
+    before = None if cycle.gallery is None else cycle.gallery.at(fraction)
+    return _state(cycle, angle, radius, chamber, cycle.orbit.at(fraction), before)
 
 
 def sample_angles(cycle: Cycle, angle: Q[Float[Array, "*grid"], "rad"]) -> PistonState:
@@ -58,13 +64,18 @@ def sample_located(
     angle = cycle.orbit.mesh.start[element] + offset
     radius = cycle.motor.cam.pitch_radius(angle)
     chamber = chamber_at(cycle.motor, cycle.reference_radius, angle, radius)
-    return _state(cycle, angle, radius, chamber, cycle.orbit.at_offset(element, offset))
+    before = None if cycle.gallery is None else cycle.gallery.at_offset(element, offset)
+    state = cycle.orbit.at_offset(element, offset)
+    return _state(cycle, angle, radius, chamber, state, before)
 
 
-def _state(cycle: Cycle, angle: Array, radius: Jet, chamber: Chamber, state: Array) -> PistonState:
+def _state(
+    cycle: Cycle, angle: Array, radius: Jet, chamber: Chamber, state: Array, gallery: Array | None
+) -> PistonState:
     motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
     pressure = fluid.pressure(state)
-    flows = port_flows(motor, fluid, point, chamber, pressure)
+    before = point.supply_pressure if gallery is None else fluid.pressure(gallery)
+    flows = port_flows(motor, fluid, at_supply(point, before), chamber, pressure)
     damping = motor.viscous_damping(fluid)
     force = radial_force(
         motor.piston, pressure, point.case_pressure, radius, point.shaft_speed, damping
@@ -77,6 +88,7 @@ def _state(cycle: Cycle, angle: Array, radius: Jet, chamber: Chamber, state: Arr
         chamber=chamber,
         lift=radius.value - cycle.reference_radius,
         chamber_pressure=pressure,
+        supply_pressure=jnp.broadcast_to(before, pressure.shape),
         supply_flow=flows.supply,
         return_flow=flows.return_,
         leakage_flow=flows.leakage,

@@ -8,21 +8,15 @@ takes, and by the chamber's own volume (model.md sections 3 and 13):
 
 from typing import NamedTuple
 
+import jax
+import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q
+from camring.physics.chamber import Chamber
 from camring.physics.fluid import AbstractFluid, OilAt
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
-
-
-class Chamber(NamedTuple):
-    """What a chamber is at each angle, whatever its pressure."""
-
-    supply_area: Q[Float[Array, "*grid"], "m2"]
-    return_area: Q[Float[Array, "*grid"], "m2"]
-    volume: Q[Float[Array, "*grid"], "m3"]
-    volume_slope: Q[Float[Array, "*grid"], "m3/rad"]
 
 
 class PortFlows(NamedTuple):
@@ -81,3 +75,25 @@ def pressure_slope(
     flows = _flows(motor, fluid, point, chamber, pressure, here)
     net = (flows.supply + flows.return_ - flows.leakage) / point.shaft_speed
     return (net - here.content * chamber.volume_slope) / (here.content_slope * chamber.volume)
+
+
+def exchange_rate(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    chamber: Chamber,
+    pressure: Q[Float[Array, "*grid"], "Pa"],
+) -> Q[Float[Array, "*grid"], "1/rad"]:
+    """Rate at which flows carry away a small excess of oil.
+
+    Its integral over a period is minus the logarithm of the Floquet multiplier,
+    free of the chamber's own compression, which cancels over a period.
+    """
+
+    def net(at: Q[Float[Array, "*grid"], "Pa"]) -> Float[Array, "*grid"]:
+        flows = port_flows(motor, fluid, point, chamber, at)
+        return flows.supply + flows.return_ - flows.leakage
+
+    _, slope = jax.jvp(net, (pressure,), (jnp.ones_like(pressure),))
+    capacity = fluid.at(pressure).content_slope * chamber.volume
+    return -slope / (capacity * point.shaft_speed)

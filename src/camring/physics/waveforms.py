@@ -21,6 +21,8 @@ class Waveforms(eqx.Module):
     jerk: Q[Float[Array, " angle"], "m/s3"]
     volume: Q[Float[Array, " angle"], "m3"]
     chamber_pressure: Q[Float[Array, " angle"], "Pa"]
+    gallery_pressure: Q[Float[Array, " angle"], "Pa"] | None
+    """Before the supply windows; None without a manifold."""
     supply_flow: Q[Float[Array, " angle"], "m3/s"]
     return_flow: Q[Float[Array, " angle"], "m3/s"]
     leakage_flow: Q[Float[Array, " angle"], "m3/s"]
@@ -64,6 +66,7 @@ def waveforms(cycle: Cycle, angle: Q[Float[Array, " angle"], "rad"]) -> Waveform
         jerk=speed**3 * piston.radius.third,
         volume=piston.chamber.volume,
         chamber_pressure=piston.chamber_pressure,
+        gallery_pressure=None if cycle.gallery is None else piston.supply_pressure,
         supply_flow=piston.supply_flow * per_amount,
         return_flow=piston.return_flow * per_amount,
         leakage_flow=piston.leakage_flow * per_amount,

@@ -27,6 +27,7 @@ from camring.search.problem import (
 from camring.search.residual_mean import LeaveOneOut
 from camring.search.sampling import generator, initial_point, sobol
 from camring.search.surrogate import Surrogate, build
+from camring.search.threads import one_linear_algebra_thread
 from camring.search.trust_region import TrustRegion
 
 EXPLORE, REFINE = "explore", "refine"
@@ -84,6 +85,10 @@ class Bayesian(AbstractStrategy):
 
     def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
         """The next point: of the initial design, of the whole box, or near the best."""
+        with one_linear_algebra_thread():
+            return self._next(history, memory, seed)
+
+    def _next(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
         trial = len(history)
         initial = 2 * self.dimension + 2 if self.initial is None else self.initial
         learnable = sum(not evaluation.failed for evaluation in history)

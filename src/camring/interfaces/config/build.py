@@ -17,6 +17,7 @@ from camring.interfaces.config.tables import (
     CamTable,
     FileTables,
     GapTable,
+    ManifoldTable,
     OperatingPointTable,
     PlanarCamTable,
     RadialCamTable,
@@ -24,6 +25,7 @@ from camring.interfaces.config.tables import (
     ValvePlateTable,
 )
 from camring.numerics.quantity import real
+from camring.physics.gallery import Manifold
 from camring.physics.gap import PistonGap
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
@@ -51,6 +53,7 @@ def build_system(tables: FileTables, choices: Choices) -> System:
             leakage=laws["motor.leakage"],
             friction=laws["motor.friction"],
             gap=_gap(motor.gap),
+            manifold=_manifold(motor.manifold),
             given_reference_radius=real(given),
             reference=rule,
             pistons=motor.pistons,
@@ -119,6 +122,12 @@ def _gap(gap: GapTable | None) -> PistonGap | None:
     if gap is None:
         return None
     return PistonGap(real(gap.clearance), real(gap.length), real(gap.eccentricity))
+
+
+def _manifold(manifold: ManifoldTable | None) -> Manifold | None:
+    if manifold is None:
+        return None
+    return Manifold(real(manifold.supply_volume), real(manifold.line_conductance))
 
 
 def _operating_point(point: OperatingPointTable) -> OperatingPoint:

@@ -204,6 +204,33 @@ class GapTable(Table):
     ] = 0.0
 
 
+class ManifoldTable(Table):
+    """[motor.manifold]: the gallery before the supply windows, and the line that feeds it."""
+
+    supply_volume: Key[
+        float,
+        Number(
+            "the oil volume common to all supply windows",
+            '"200 cm^3"',
+            unit="m^3",
+            low=1e-9,
+            high=100.0,
+            leaves=("motor.manifold.volume",),
+        ),
+    ]
+    line_conductance: Key[
+        float,
+        Number(
+            "the volume flow through the feeding line for each unit of pressure drop",
+            '"40 L/min/bar"',
+            unit="m^3/s/Pa",
+            low=1e-14,
+            high=1e3,
+            leaves=("motor.manifold.line_conductance",),
+        ),
+    ]
+
+
 class MotorTable(Table):
     """[motor]"""
 
@@ -237,6 +264,7 @@ class MotorTable(Table):
     roller: RollerTable
     valve_plate: ValvePlateTable
     gap: GapTable | None = None
+    manifold: ManifoldTable | None = None
 
 
 class FluidTable(Table):

@@ -29,6 +29,7 @@ RETURN = "#3f7d6a"
 LIMIT = "#a3262b"
 
 LOSSES = {
+    "line_loss": "#4a6b52",
     "throttling_loss": "#0b5cad",
     "leakage_loss": "#56a3d9",
     "friction_loss": "#d99a1c",

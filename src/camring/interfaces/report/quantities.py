@@ -12,7 +12,7 @@ class Quantity:
 
     `better` is +1 when more is better, -1 when less is, 0 when neither.
     `relative` changes are given in per cent, others in the unit itself
-    (percentages change by points).
+    (percentages change by points). A `rare` result is left out where it is nil.
     """
 
     name: str
@@ -22,6 +22,7 @@ class Quantity:
     better: int = 0
     digits: int = 4
     relative: bool = True
+    rare: bool = False
 
     def value(self, si: float) -> float:
         return si * self.factor
@@ -77,6 +78,7 @@ GROUPS: tuple[tuple[str, tuple[Quantity, ...]], ...] = (
         (
             Quantity("input_power", "Hydraulic input", "kW", 1e-3),
             Quantity("output_power", "Shaft output", "kW", 1e-3, 1),
+            Quantity("line_loss", "Loss in the supply line", "W", 1.0, -1, rare=True),
             Quantity("throttling_loss", "Throttling loss", "W", 1.0, -1),
             Quantity("leakage_loss", "Leakage loss", "W", 1.0, -1),
             Quantity("friction_loss", "Friction loss", "W", 1.0, -1),
@@ -90,6 +92,9 @@ GROUPS: tuple[tuple[str, tuple[Quantity, ...]], ...] = (
             Quantity("max_pressure", "Highest chamber pressure", "bar", 1e-5, -1),
             Quantity("pressure_overshoot", "Overshoot above supply", "bar", 1e-5, -1, 3),
             Quantity("pressure_undershoot", "Undershoot below return", "bar", 1e-5, -1, 3),
+            Quantity(
+                "supply_pressure_swing", "Supply pressure, peak to peak", "bar", 1e-5, -1, rare=True
+            ),
             Quantity("pressure_ripple", "Chamber pressure ripple, one-sided", "%", 100.0, 0, 3),
         ),
     ),

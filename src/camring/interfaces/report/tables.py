@@ -86,6 +86,8 @@ def _result_row(quantity: Quantity, results: Sequence[Result]) -> str:
     if any(value is None for value in values):
         return ""
     numbers = [float(value) for value in values if value is not None]
+    if quantity.rare and not any(numbers):
+        return ""
     cells = [(quantity.unit, "unit"), *((quantity.written(v), "n") for v in numbers)]
     if len(numbers) == 2:
         text, better = change(quantity, *numbers)

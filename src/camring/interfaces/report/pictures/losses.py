@@ -15,17 +15,19 @@ from camring.interfaces.report.svg import element, group, words
 
 __all__ = ["balance_residual", "loss_figure"]
 
-_DARK = ("throttling_loss", "compression_loss")
+_DARK = ("line_loss", "throttling_loss", "compression_loss")
 
 
 def balance_residual(metrics: dict[str, float]) -> float:
-    """Input less output less the four losses, as a share of the input."""
-    rest = metrics["input_power"] - metrics["output_power"] - sum(metrics[k] for k in LOSSES)
+    """Input less output less all losses, as a share of the input."""
+    rest = (
+        metrics["input_power"] - metrics["output_power"] - sum(metrics.get(k, 0.0) for k in LOSSES)
+    )
     return rest / metrics["input_power"]
 
 
 def loss_figure(designs: Sequence[Design], duty: int) -> Figure | None:
-    """The four losses of every design stacked, negative terms to the left of zero.
+    """The losses of every design stacked, negative terms to the left of zero.
 
     None when a simulation failed and there is no power to balance.
     """
@@ -34,7 +36,9 @@ def loss_figure(designs: Sequence[Design], duty: int) -> Figure | None:
     shares = []
     for design in designs:
         metrics = design.results[duty].metrics
-        shares.append({name: 100 * metrics[name] / metrics["input_power"] for name in LOSSES})
+        shares.append(
+            {name: 100 * metrics.get(name, 0.0) / metrics["input_power"] for name in LOSSES}
+        )
     high = max(sum(v for v in share.values() if v > 0) for share in shares)
     low = min(sum(v for v in share.values() if v < 0) for share in shares)
     room = 0.03 * (high - low) or 1.0
@@ -57,10 +61,10 @@ def loss_figure(designs: Sequence[Design], duty: int) -> Figure | None:
     svg = picture(
         name,
         "Where the power goes",
-        "The four losses of every design in per cent of the hydraulic input, stacked.",
+        "The losses of every design in per cent of the hydraulic input, stacked.",
         bars.size,
         bars.grid(),
-        _keys(bars.left),
+        _keys(bars.left, [name for name in LOSSES if any(share[name] for share in shares)]),
         *rows,
         bars.wall(0.0),
     )
@@ -77,6 +81,8 @@ def _stack(bars: Bars, design: Design, duty: int, share: dict[str, float], y: fl
     forward = backward = 0.0
     for name, colour in LOSSES.items():
         value = share[name]
+        if not value:
+            continue
         start = forward if value >= 0 else backward
         left, right = sorted((bars.x(start), bars.x(start + value)))
         pieces.append(
@@ -107,9 +113,10 @@ def _stack(bars: Bars, design: Design, duty: int, share: dict[str, float], y: fl
     return group(*pieces)
 
 
-def _keys(x: float) -> str:
+def _keys(x: float, names: Sequence[str]) -> str:
     pieces = []
-    for name, colour in LOSSES.items():
+    for name in names:
+        colour = LOSSES[name]
         label = QUANTITIES[name].label.lower()
         pieces += [
             element("rect", x=x, y=6.0, width=14.0, height=11.0, fill=colour),
@@ -121,7 +128,7 @@ def _keys(x: float) -> str:
 
 def _words(designs: Sequence[Design], duty: int) -> str:
     metrics = dict(designs[-1].results[duty].metrics)
-    order = sorted(LOSSES, key=lambda name: -metrics[name])
+    order = sorted(LOSSES, key=lambda name: -metrics.get(name, 0.0))
     residual = abs(balance_residual(metrics))
     closes = "to within a millionth" if residual < 1e-6 else f"to {1e6 * residual:.1g} millionths"
     text = (

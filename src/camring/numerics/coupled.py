@@ -1,0 +1,314 @@
+"""Periodic orbits of many equal equations that share one more state.
+
+`links` copies of a scalar equation run through the same orbit `y`, each a
+`links`-th of the period behind the one before, and all of them feed and are fed
+by one shared state `z`, whose period therefore is that part:
+
+    dy/dx = rate(forcing(x), y, z)
+    dz/dx = shared_rate(z, sum over copies of draw(forcing, y, z))
+
+Cut into parts and laid side by side, the whole period is one of the parts with
+`links + 1` states, closed by a shift: each copy ends where the next began. It is
+solved as `periodic.py` solves the scalar equation: Radau collocation, one Newton
+iteration for all elements and the closure together. In each element the copies
+meet in the shared state only, so stages are eliminated copy by copy, and three
+stages of the shared state remain.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax.lax import stop_gradient
+from jaxtyping import Array, Float
+
+from camring.numerics.equation import Forcing
+from camring.numerics.mesh import Mesh
+from camring.numerics.periodic import Orbit
+from camring.numerics.radau import STAGE_INTEGRALS, STAGES, combine, solve_stages
+from camring.numerics.spline import floor_past_rounding
+
+TOLERANCE = 1e-9  # of Newton's step against the range of the states; one more step follows
+ITERATIONS = 40
+
+
+class CoupledEquation(eqx.Module):
+    """The two rates, elementwise, with their parameters in the open."""
+
+    parameters: Any
+    rate: Callable[..., Array] = eqx.field(static=True)
+    """`(parameters, forcing, state, shared)`."""
+    draw: Callable[..., Array] = eqx.field(static=True)
+    """The same arguments: what one copy takes out of the shared state."""
+    shared_rate: Callable[..., Array] = eqx.field(static=True)
+    """`(parameters, shared, total drawn)`."""
+    forcing_law: Callable[..., Forcing] = eqx.field(static=True)
+
+    def frozen(self) -> "CoupledEquation":
+        """The same equation, through which no derivative passes to its parameters."""
+        constant = jax.tree.map(stop_gradient, self.parameters)
+        return eqx.tree_at(lambda each: each.parameters, self, constant)
+
+
+class CoupledOrbit(NamedTuple):
+    """One period of a copy and of the shared state, on one mesh."""
+
+    own: Orbit
+    shared: Orbit
+
+
+class _Linear(NamedTuple):
+    """Both rates at the stages with their slopes: copies (3, link, element), shared (3, element)."""
+
+    rate: Array
+    by_own: Array
+    by_shared: Array
+    shared_rate: Array
+    shared_by_own: Array
+    shared_by_shared: Array
+
+
+def fold(mesh: Mesh, period: float, links: int) -> Mesh:
+    """A mesh with nodes wherever any copy has one: every part divided like every other."""
+    part = period / links
+    from_first = mesh.start - mesh.start[0]
+    own = jnp.clip(floor_past_rounding(stop_gradient(from_first) / part), 0, links - 1)
+    folded = jnp.maximum(from_first - own * part, 0)
+    order = jnp.argsort(stop_gradient(folded))
+    start = folded[order]
+    width = jnp.maximum(jnp.concatenate([start[1:], jnp.full(1, part)]) - start, 0)
+    shifts = mesh.start[0] + part * jnp.arange(links)
+    return Mesh(
+        (shifts[:, None] + start).reshape(-1),
+        jnp.tile(width, links),
+        jnp.tile(mesh.is_first[order], links),
+    )
+
+
+def solve_coupled(
+    equation: CoupledEquation,
+    mesh: Mesh,
+    links: int,
+    guess: Float[Array, "3 element"],
+    shared_guess: Float[Array, ""],
+) -> CoupledOrbit:
+    """The periodic solution on a folded mesh.
+
+    Parameters
+    ----------
+    mesh
+        From `fold` with the same `links`.
+    guess
+        A copy's states at the stages of the mesh, as from an orbit without coupling.
+    shared_guess
+        The shared state, as if it stood still.
+
+    Notes
+    -----
+    Nothing is raised; a residual that stays large is for the caller's verdict.
+    Differentiable like `solve_periodic`: one last Newton step from a constant.
+    """
+    width = mesh.width.reshape(links, -1)[0]
+    frozen_mesh = jax.tree.map(stop_gradient, mesh)
+    at_stages = _forcing(equation.frozen(), frozen_mesh, links)
+    own = stop_gradient(guess).reshape(3, links, -1)
+    shared = jnp.broadcast_to(stop_gradient(shared_guess), (3, 1, own.shape[-1]))
+    stages = jnp.concatenate([own, shared], axis=1)
+    stages, iterations = _newton(equation.frozen(), at_stages, stop_gradient(width), stages)
+
+    at_stages = _forcing(equation, mesh, links)
+    nodes, stages, multiplier = _step(equation, at_stages, width, stop_gradient(stages))
+    residual = _residual(equation, at_stages, width, nodes, stages)
+    whole = stages[:, :-1].reshape(3, -1)
+    repeated = jnp.tile(stages[:, -1], (1, links))
+    return CoupledOrbit(
+        Orbit(mesh, nodes[:-1].reshape(-1), whole, multiplier, residual, iterations),
+        Orbit(mesh, jnp.tile(nodes[-1], links), repeated, multiplier, residual, iterations),
+    )
+
+
+def _forcing(equation: CoupledEquation, mesh: Mesh, links: int) -> Forcing:
+    """The forcing at the stages, leaves (3, link, element)."""
+    flat = equation.forcing_law(equation.parameters, mesh.start, mesh.width, jnp.asarray(STAGES))
+    return jax.tree.map(lambda leaf: leaf.reshape(3, links, -1), flat)
+
+
+def _linear(equation: CoupledEquation, forcing: Forcing, stages: Array) -> _Linear:
+    own, shared = stages[:, :-1], stages[:, -1:]
+    spread = jnp.broadcast_to(shared, own.shape)
+    one, none = jnp.ones_like(own), jnp.zeros_like(own)
+
+    def both(state: Array, common: Array) -> tuple[Array, Array]:
+        return (
+            equation.rate(equation.parameters, forcing, state, common),
+            equation.draw(equation.parameters, forcing, state, common),
+        )
+
+    (rate, drawn), (by_own, drawn_by_own) = jax.jvp(both, (own, spread), (one, none))
+    _, (by_shared, drawn_by_shared) = jax.jvp(both, (own, spread), (none, one))
+    total, common = jnp.sum(drawn, axis=1), stages[:, -1]
+
+    def of_shared(state: Array, taken: Array) -> Array:
+        return equation.shared_rate(equation.parameters, state, taken)
+
+    one, none = jnp.ones_like(common), jnp.zeros_like(common)
+    shared_rate, direct = jax.jvp(of_shared, (common, total), (one, none))
+    _, by_total = jax.jvp(of_shared, (common, total), (none, one))
+    return _Linear(
+        rate,
+        stop_gradient(by_own),
+        stop_gradient(by_shared),
+        shared_rate,
+        stop_gradient(by_total[:, None] * drawn_by_own),
+        stop_gradient(direct + by_total * jnp.sum(drawn_by_shared, axis=1)),
+    )
+
+
+def _step(
+    equation: CoupledEquation, forcing: Forcing, width: Float[Array, " element"], stages: Array
+) -> tuple[Float[Array, "state element"], Float[Array, "3 state element"], Float[Array, ""]]:
+    """One Newton step of all collocation equations and the closure together.
+
+    Returns states at the nodes and the stages, the shared one last, and the
+    Floquet multiplier of a copy while the shared state is held.
+    """
+    here = _linear(equation, forcing, stages)
+    integrals = STAGE_INTEGRALS
+    step = stop_gradient(width)
+
+    def weighted(row: int, slopes: Array) -> list[Array]:
+        return [step * float(integrals[row, j]) * slopes[j] for j in range(3)]
+
+    # Every copy: its stages from its start, from itself, and from the shared stages.
+    own_matrix = [
+        [float(i == j) - entry for j, entry in enumerate(weighted(i, here.by_own))]
+        for i in range(3)
+    ]
+    own_defect = [width * combine(integrals[i], list(here.rate)) - stages[i, :-1] for i in range(3)]
+    ones = jnp.ones_like(stages[0, :-1])
+    pulled = [[weighted(i, here.by_shared)[j] for i in range(3)] for j in range(3)]
+    growth, offset, *response = solve_stages(own_matrix, [ones] * 3, own_defect, *pulled)
+
+    # The shared state, with every copy's answer in it.
+    def felt(answer: list[Array]) -> list[Array]:
+        """What the copies' stages do to the shared equations, each copy by itself."""
+        return [
+            sum((a * b for a, b in zip(weighted(i, here.shared_by_own), answer, strict=True)))
+            for i in range(3)
+        ]
+
+    back = [[jnp.sum(each, axis=0) for each in felt(response[j])] for j in range(3)]
+    shared_matrix = [
+        [float(i == j) - weighted(i, here.shared_by_shared)[j] - back[j][i] for j in range(3)]
+        for i in range(3)
+    ]
+    shared_defect = [
+        width * combine(integrals[i], list(here.shared_rate))
+        - stages[i, -1]
+        + jnp.sum(felt(offset)[i], axis=0)
+        for i in range(3)
+    ]
+    one = jnp.ones_like(step)
+    from_itself, alone = solve_stages(shared_matrix, [one] * 3, shared_defect)
+    broad = [[jnp.broadcast_to(entry, ones.shape) for entry in row] for row in shared_matrix]
+    (from_copies,) = solve_stages(broad, felt(growth))
+
+    # From the states at an element's start to all its stages: (3, state, state, element).
+    def through(shared_answer: list[Array]) -> list[Array]:
+        """Stages of the copies that follow from stages of the shared state."""
+        return [sum(response[j][i] * shared_answer[j] for j in range(3)) for i in range(3)]
+
+    links = ones.shape[0]
+    identity = jnp.eye(links)[..., None]
+    transfer, constant = [], []
+    for i in range(3):
+        copies = identity * growth[i][None] + sum(
+            response[j][i][:, None] * from_copies[j][None] for j in range(3)
+        )
+        column = through(from_itself)[i][:, None]
+        upper = jnp.concatenate([copies, column], axis=1)
+        lower = jnp.concatenate([from_copies[i], from_itself[i][None]], axis=0)[None]
+        transfer.append(jnp.concatenate([upper, lower], axis=0))
+        rest = jnp.concatenate([(offset[i] + through(alone)[i]), alone[i][None]], axis=0)
+        constant.append(stages[i] + rest)
+    nodes = _close(transfer[2], constant[2])
+    updated = jnp.stack(
+        [
+            jnp.sum(matrix * nodes[None], axis=1) + rest
+            for matrix, rest in zip(transfer, constant, strict=True)
+        ]
+    )
+    return nodes, updated, jnp.prod(growth[2])
+
+
+def _close(
+    transfer: Float[Array, "state state element"], constant: Float[Array, "state element"]
+) -> Float[Array, "state element"]:
+    """States at all nodes: each copy ends where the next began, the shared one where it began."""
+
+    def compose(so_far: tuple, element: tuple) -> tuple:
+        product, total = so_far
+        matrix, rest = element
+        return (matrix @ product, matrix @ total + rest), so_far
+
+    count = constant.shape[0]
+    start = (jnp.eye(count), jnp.zeros(count))
+    (product, total), (products, totals) = jax.lax.scan(
+        compose, start, (jnp.moveaxis(transfer, -1, 0), constant.T)
+    )
+    following = [*range(1, count - 1), 0, count - 1]
+    first = jnp.linalg.solve(jnp.eye(count)[jnp.array(following)] - product, total)
+    return (products @ first + totals).T
+
+
+def _newton(
+    equation: CoupledEquation, forcing: Forcing, width: Float[Array, " element"], stages: Array
+) -> tuple[Array, Array]:
+    """Newton on the whole period until its step is small, held back as in `periodic.py`."""
+
+    def unfinished(carry: tuple) -> Array:
+        _, _, _, size, count = carry
+        return (size > TOLERANCE) & (count < ITERATIONS)
+
+    def improve(carry: tuple) -> tuple:
+        current, before, share, _, count = carry
+        _, updated, _ = _step(equation, forcing, width, current)
+        step = updated - current
+        leaps = (step * before < 0) & (2 * jnp.abs(step) > jnp.abs(before))
+        share = jnp.where(leaps, share / 2, jnp.minimum(2 * share, 1))
+        size = jnp.max(jnp.abs(step)) / _extent(updated)
+        return current + share * step, step, share, size, count + 1
+
+    start = (stages, jnp.zeros_like(stages), jnp.ones_like(stages))
+    stages, _, _, _, count = jax.lax.while_loop(
+        unfinished, improve, (*start, jnp.asarray(jnp.inf), jnp.asarray(0))
+    )
+    return stages, count
+
+
+def _extent(stages: Array) -> Float[Array, ""]:
+    own = stages[:, :-1]
+    return jnp.max(own) - jnp.min(own) + 1e-300
+
+
+def _residual(
+    equation: CoupledEquation,
+    forcing: Forcing,
+    width: Float[Array, " element"],
+    nodes: Array,
+    stages: Array,
+) -> Float[Array, ""]:
+    """Largest violation of stage equations or closure, over the range of a copy's orbit."""
+    here = _linear(equation, forcing, stages)
+    rate = jnp.concatenate([here.rate, here.shared_rate[:, None]], axis=1)
+    errors = [
+        jnp.abs(nodes + width * combine(row, list(rate)) - stages[i])
+        for i, row in enumerate(STAGE_INTEGRALS)
+    ]
+    inner = jnp.abs(stages[2, :, :-1] - nodes[:, 1:])
+    ends, begins = stages[2, :, -1], nodes[:, 0]
+    closure = jnp.abs(ends - jnp.concatenate([jnp.roll(begins[:-1], -1), begins[-1:]]))
+    largest = jnp.max(jnp.stack(errors))
+    return jnp.maximum(jnp.maximum(largest, jnp.max(inner)), jnp.max(closure)) / _extent(stages)
