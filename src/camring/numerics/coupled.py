@@ -60,7 +60,7 @@ class CoupledOrbit(NamedTuple):
 
 
 class _Linear(NamedTuple):
-    """Both rates at the stages with their slopes: copies (3, link, element), shared (3, element)."""
+    """Both rates, their slopes at the stages; of copies (3, link, element), else (3, element)."""
 
     rate: Array
     by_own: Array
@@ -194,10 +194,7 @@ def _step(
     # The shared state, with every copy's answer in it.
     def felt(answer: list[Array]) -> list[Array]:
         """What the copies' stages do to the shared equations, each copy by itself."""
-        return [
-            sum((a * b for a, b in zip(weighted(i, here.shared_by_own), answer, strict=True)))
-            for i in range(3)
-        ]
+        return [_dot(weighted(i, here.shared_by_own), answer) for i in range(3)]
 
     back = [[jnp.sum(each, axis=0) for each in felt(response[j])] for j in range(3)]
     shared_matrix = [
@@ -218,7 +215,7 @@ def _step(
     # From the states at an element's start to all its stages: (3, state, state, element).
     def through(shared_answer: list[Array]) -> list[Array]:
         """Stages of the copies that follow from stages of the shared state."""
-        return [sum(response[j][i] * shared_answer[j] for j in range(3)) for i in range(3)]
+        return [_dot([response[j][i] for j in range(3)], shared_answer) for i in range(3)]
 
     links = ones.shape[0]
     identity = jnp.eye(links)[..., None]
@@ -243,6 +240,12 @@ def _step(
     return nodes, updated, jnp.prod(growth[2])
 
 
+def _dot(factors: list[Array], arrays: list[Array]) -> Array:
+    """Sum of three products, written out so that it fuses with what is around it."""
+    first, second, third = zip(factors, arrays, strict=True)
+    return first[0] * first[1] + second[0] * second[1] + third[0] * third[1]
+
+
 def _close(
     transfer: Float[Array, "state state element"], constant: Float[Array, "state element"]
 ) -> Float[Array, "state element"]:
@@ -255,6 +258,8 @@ def _close(
 
     count = constant.shape[0]
     start = (jnp.eye(count), jnp.zeros(count))
+    products: Array
+    totals: Array
     (product, total), (products, totals) = jax.lax.scan(
         compose, start, (jnp.moveaxis(transfer, -1, 0), constant.T)
     )

@@ -1,8 +1,9 @@
 """One motor at one operating point, over one period of its cam.
 
 Every chamber runs through the same orbit, so one reference piston gives all
-(model.md section 1); with a manifold they also meet in the pressure before it. `simulate` finds its periodic
-pressure; `piston_state.py` and `waveforms.py` read the rest off the result.
+(model.md section 1); with a manifold they also meet in the pressure before their
+windows. `simulate` finds its periodic pressure; `piston_state.py` and
+`waveforms.py` read the rest off the result.
 """
 
 import equinox as eqx
