@@ -10,14 +10,16 @@ the tests compare the two.
 from dataclasses import dataclass
 from typing import Any
 
-from camring.metrics.independent.machine import Machine, Oil, Window, machine_of
-from camring.metrics.independent.orbit import Orbit, OrbitError, periodic_orbit
+from camring.metrics.independent.failure import OrbitError
+from camring.metrics.independent.machine import Machine, Manifold, Oil, Window, machine_of
+from camring.metrics.independent.orbit import Orbit, periodic_orbit
 from camring.metrics.independent.results import results
 from camring.metrics.independent.shape import NotStarShapedError
 
 __all__ = [
     "IndependentSolution",
     "Machine",
+    "Manifold",
     "NotStarShapedError",
     "Oil",
     "Orbit",

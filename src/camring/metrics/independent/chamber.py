@@ -7,14 +7,20 @@ import numpy as np
 
 from camring.metrics.independent.laws import OilLaw, opening, opening_kinks, orifice
 from camring.metrics.independent.machine import Machine, Window
+from camring.metrics.independent.series import PeriodicSeries
 from camring.metrics.independent.shape import Piece, PitchCurve
 
 
 class Chamber:
-    """Right-hand side dP/dtheta, cut into stretches without kinks."""
+    """Right-hand side dP/dtheta, cut into stretches without kinks.
 
-    def __init__(self, machine: Machine) -> None:
+    `gallery` is the pressure before the supply windows; None where it stands at
+    the set pressure.
+    """
+
+    def __init__(self, machine: Machine, gallery: PeriodicSeries | None = None) -> None:
         self.machine = machine
+        self.gallery = gallery
         self.curve = PitchCurve(machine)
         self.oil = OilLaw(machine.oil)
         self.orifice = orifice(machine)
@@ -55,6 +61,10 @@ class Chamber:
                     window.centre + kink + self.pitch * k
                     for k in range(self.machine.lobes // self.machine.repeats)
                 ]
+        if self.gallery is not None:
+            part = self.gallery.period
+            copies = round(period / part)
+            around += [e + part * k for e in self.gallery.edges[:-1] for k in range(copies)]
         inside = np.sort((np.asarray(around) - self.start) % period)
         all_edges = np.concatenate([[0.0], inside, [period]])
         keep = np.concatenate([[True], np.diff(all_edges) > 1e-13 * period])
@@ -72,6 +82,34 @@ class Chamber:
         starts = [p.start for p in self.pieces]
         return self.pieces[max(int(np.searchsorted(starts, home, side="right")) - 1, 0)], turns
 
+    def motion(self, middle: float) -> Callable[[float], tuple[float, float]]:
+        """theta -> (volume, its slope) on the stretch without kinks around an angle."""
+        piece, turns = self.piece_at(middle)
+        origin, scale, powers = piece.origin + turns, piece.scale, piece.coefficients[::-1]
+        area = self.machine.piston_area
+        fixed = self.machine.dead_volume - area * self.reference
+
+        def of(angle: float) -> tuple[float, float]:
+            x = (angle - origin) * scale
+            value = slope = 0.0
+            for power in powers:
+                slope = slope * x + value
+                value = value * x + power
+            return fixed + area * value, area * slope * scale
+
+        return of
+
+    def supply_law(self) -> Callable[[float], float]:
+        """Pressure before the supply windows at an angle."""
+        constant = self.machine.supply_pressure
+        return (lambda _: constant) if self.gallery is None else self.gallery.scalar
+
+    def supply_at(self, angle: np.ndarray) -> np.ndarray:
+        """The same for many angles."""
+        if self.gallery is None:
+            return np.full(np.shape(angle), self.machine.supply_pressure)
+        return self.gallery(angle)
+
     def slopes(
         self, start: float, end: float, shift: float
     ) -> Callable[[float, float], tuple[float, float]]:
@@ -80,28 +118,18 @@ class Chamber:
         `P = shift + scale y`, or `P = shift e^y` for oil with air in it.
         """
         m, middle = self.machine, (start + end) / 2
-        piece, turns = self.piece_at(middle)
-        origin, scale, powers = piece.origin + turns, piece.scale, piece.coefficients[::-1]
-        area, fixed = m.piston_area, m.dead_volume - m.piston_area * self.reference
+        motion = self.motion(middle)
         supply_at = self.nearest_centre(m.supply, middle)
         return_at = self.nearest_centre(m.return_, middle)
         supply_open, return_open = self.supply_opening, self.return_opening
         flow, port, speed, leak = self.orifice, m.port_area, m.shaft_speed, m.leakage_coefficient
-        to_supply, to_return = m.supply_pressure - shift, m.return_pressure - shift
+        supply_pressure, to_return = self.supply_law(), m.return_pressure - shift
         density, modulus, unit, case = (
             m.oil.density,
             m.oil.bulk_modulus,
             self.scale,
             m.case_pressure,
         )
-
-        def motion(angle: float) -> tuple[float, float]:
-            x = (angle - origin) * scale
-            value = slope = 0.0
-            for power in powers:
-                slope = slope * x + value
-                value = value * x + power
-            return fixed + area * value, area * slope * scale
 
         def stiff(y: float, angle: float) -> tuple[float, float]:
             volume, swept = motion(angle)
@@ -110,6 +138,7 @@ class Chamber:
             net = -leak * (pressure - case) / speed - swept
             share = supply_open(angle - supply_at)
             if share > 0:
+                to_supply = supply_pressure(angle) - shift
                 net += flow(port * share, to_supply - above, density) / speed
             share = return_open(angle - return_at)
             if share > 0:
@@ -117,8 +146,10 @@ class Chamber:
             return modulus * net / (volume * unit), pressure
 
         rho, rho_slope = self.oil.density, self.oil.density_slope
-        rho_supply, rho_return = rho(m.supply_pressure), rho(m.return_pressure)
-        rho_case = rho(case)
+        rho_supply, rho_return, rho_case = (
+            rho(at) for at in (m.supply_pressure, m.return_pressure, case)
+        )
+        rho_before = (lambda _: rho_supply) if self.gallery is None else rho
 
         logarithmic = self.oil.logarithmic
 
@@ -130,8 +161,9 @@ class Chamber:
             net = -(here + rho_case) / 2 * leak * (pressure - case) / speed - here * swept
             share = supply_open(angle - supply_at)
             if share > 0:
-                mean = (here + rho_supply) / 2
-                net += mean * flow(port * share, to_supply - above, mean) / speed
+                before = supply_pressure(angle)
+                mean = (here + rho_before(before)) / 2
+                net += mean * flow(port * share, (before - shift) - above, mean) / speed
             share = return_open(angle - return_at)
             if share > 0:
                 mean = (here + rho_return) / 2
@@ -149,9 +181,9 @@ class Chamber:
 
     def shift_at(self, start: float, end: float) -> float:
         """Pressure of the wider open port on a stretch."""
-        m = self.machine
+        m, middle = self.machine, (start + end) / 2
         share = [
-            max(shape(at - self.nearest_centre(w, (start + end) / 2)) for at in (start, end))
+            max(shape(at - self.nearest_centre(w, middle)) for at in (start, end))
             for w, shape in ((m.supply, self.supply_opening), (m.return_, self.return_opening))
         ]
-        return m.supply_pressure if share[0] > share[1] else m.return_pressure
+        return self.supply_law()(middle) if share[0] > share[1] else m.return_pressure

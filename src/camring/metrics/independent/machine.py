@@ -49,6 +49,14 @@ class Window:
 
 
 @dataclass(frozen=True)
+class Manifold:
+    """The gallery before the supply windows and the line that feeds it."""
+
+    volume: float
+    line_conductance: float  # volume flow for each pascal
+
+
+@dataclass(frozen=True)
 class Machine:
     """One motor, its oil and one duty: everything model.md sections 2 to 6 and 13 ask for."""
 
@@ -82,6 +90,7 @@ class Machine:
     critical_flow_number: float = 1000.0
     roller_friction: float = 0.0
     side_friction: float = 0.0
+    manifold: Manifold | None = None
     notes: tuple[str, ...] = field(default=())
 
     @property
@@ -152,6 +161,12 @@ def _window(plate: Any, port: Any) -> Window:
     return replace(window, notch_angle=number(notch.angle), notch_area=number(notch.area))
 
 
+def _manifold(manifold: Any) -> Manifold | None:
+    if manifold is None:
+        return None
+    return Manifold(number(manifold.volume), number(manifold.line_conductance))
+
+
 def machine_of(motor: Any, fluid: Any, point: Any) -> Machine:
     """Read the nouns of `camring.physics` into plain numbers."""
     cam, plate = motor.cam, motor.valve_plate
@@ -195,6 +210,7 @@ def machine_of(motor: Any, fluid: Any, point: Any) -> Machine:
         critical_flow_number=number(getattr(motor.orifice, "critical_flow_number", 1000.0)),
         roller_friction=number(getattr(motor.friction, "roller", 0.0)),
         side_friction=number(getattr(motor.friction, "side", 0.0)),
+        manifold=_manifold(getattr(motor, "manifold", None)),
     )
     gap = getattr(motor, "gap", None)
     if gap is None:

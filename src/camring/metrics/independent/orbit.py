@@ -18,20 +18,16 @@ from itertools import pairwise
 from math import exp, inf, log, pi
 
 import numpy as np
-from scipy.fft import dct
 from scipy.integrate import ODEintWarning, odeint
 
 from camring.metrics.independent.chamber import Chamber
+from camring.metrics.independent.failure import OrbitError
 from camring.metrics.independent.machine import Machine
+from camring.metrics.independent.manifold import periodic_gallery
+from camring.metrics.independent.series import NODES, ORDER, series_of
 
-ORDER = 16
-NODES = np.cos(pi * np.arange(ORDER + 1) / ORDER)[::-1]
 FINEST = 1e-9  # shortest element, of the period
 MOST_ELEMENTS = 5000  # between two kinks; a sound motor needs a few
-
-
-class OrbitError(RuntimeError):
-    """No periodic pressure was found; the message says why."""
 
 
 @dataclass
@@ -44,14 +40,6 @@ class Element:
     series: np.ndarray
     final: float  # the unknown at the end
     exponent: float  # integral of df/dP
-
-
-def _series(values: np.ndarray) -> np.ndarray:
-    """Chebyshev coefficients from values at the nodes."""
-    found = dct(values[::-1], type=1) / ORDER
-    found[0] /= 2
-    found[-1] /= 2
-    return found
 
 
 @dataclass
@@ -118,7 +106,7 @@ def _follow(
         good = report["message"] == "Integration successful." and bool(np.all(np.isfinite(values)))
         if not good and to - at < finest:
             raise OrbitError(f"LSODA failed at {at:.6g} rad: {report['message']}")
-        series = _series(values)
+        series = series_of(values)
         tail = float(np.max(np.abs(series[-3:]))) if good else inf
         if tail > 3 * rtol * float(np.max(np.abs(values))) + 10 * atol and to - at >= finest:
             step = (to - at) / 2
@@ -198,8 +186,13 @@ class Orbit:
 
 
 def periodic_orbit(machine: Machine, tolerance: float = 1e-10) -> Orbit:
-    """Solve for the periodic pressure, model.md section 3."""
+    """Solve for the periodic pressure, model.md section 3.
+
+    With a manifold, that of a chamber which draws from the gallery.
+    """
     chamber = Chamber(machine)
+    if machine.manifold is not None:
+        chamber = Chamber(machine, periodic_gallery(chamber, machine.manifold, tolerance))
     pressure, allowed = machine.supply_pressure, 3 * tolerance * chamber.scale
     best: Orbit | None = None
     stretches: list[Stretch] = []

@@ -68,13 +68,14 @@ def flows(orbit: Orbit, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
     states, shifts = orbit.state(angle)
     rho, aerated = chamber.oil.density, chamber.oil.aerated
     found = np.empty((3, len(angle)))
+    before = chamber.supply_at(angle).tolist()
     for k, (at, y, shift) in enumerate(
         zip(angle.tolist(), states.tolist(), shifts.tolist(), strict=True)
     ):
         above = shift * float(np.expm1(y)) if chamber.oil.logarithmic else chamber.scale * y
         pressure = shift + above
         ports = (
-            (m.supply, chamber.supply_opening, m.supply_pressure),
+            (m.supply, chamber.supply_opening, before[k]),
             (m.return_, chamber.return_opening, m.return_pressure),
         )
         for row, (window, shape, port) in enumerate(ports):
@@ -85,6 +86,17 @@ def flows(orbit: Orbit, angle: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.n
         leak = m.leakage_coefficient * (pressure - m.case_pressure)
         found[2, k] = leak * ((rho(pressure) + rho(m.case_pressure)) / 2 if aerated else 1.0)
     return found[0], found[1], found[2]
+
+
+def through_line(orbit: Orbit, gallery: np.ndarray) -> np.ndarray:
+    """Into the gallery at its pressures: volumes a second, or masses if aerated."""
+    m, rho = orbit.chamber.machine, orbit.chamber.oil.density
+    if m.manifold is None:
+        return np.zeros_like(gallery)
+    flow = m.manifold.line_conductance * (m.supply_pressure - gallery)
+    if orbit.chamber.oil.aerated:
+        flow = flow * (rho(m.supply_pressure) + np.array([rho(p) for p in gallery])) / 2
+    return flow
 
 
 def extremes(
@@ -228,6 +240,8 @@ def results(orbit: Orbit, harmonics: int) -> dict[str, float]:
     quad = Quadrature(edges, harmonics)
     state = motion(orbit, quad.angle)
     supply, back, leak = flows(orbit, quad.angle)
+    before = chamber.supply_at(quad.angle)
+    fed = through_line(orbit, before)
     drop = m.supply_pressure - m.return_pressure
     surviving = lcm(m.pistons, m.repeats)
     speed = w * state.jet[1]
@@ -237,13 +251,16 @@ def results(orbit: Orbit, harmonics: int) -> dict[str, float]:
         at_supply, at_return = chamber.oil.enthalpy(
             np.array([m.supply_pressure, m.return_pressure])
         )
-        through = supply * (at_supply - level) + back * (at_return - level)
+        at_window = at_supply if m.manifold is None else chamber.oil.enthalpy(before)
+        through = supply * (at_window - level) + back * (at_return - level)
+        in_line = fed * (at_supply - at_window)
         leaking, compressing = leak * (level - at_return), np.zeros_like(leak)
         input_power = m.pistons * quad.mean(supply) * float(at_supply - at_return)
         supply = supply / chamber.oil.density(m.supply_pressure)
     else:
         above = state.pressure - m.return_pressure
-        through = supply * (drop - above) - back * above
+        through = supply * ((before - m.return_pressure) - above) - back * above
+        in_line = fed * (m.supply_pressure - before)
         leaking = leak * above
         # Integral of (P-Pt) V/beta dP by parts: the balance of power is then a true check.
         compressing = -m.piston_area * speed * above**2 / (2 * m.oil.bulk_modulus)
@@ -258,6 +275,7 @@ def results(orbit: Orbit, harmonics: int) -> dict[str, float]:
     size = lambda orders: float(np.sum(np.abs(orders) ** 2))  # noqa: E731
     low_pressure, high_pressure = extremes(lambda at, _: orbit.pressure(at), orbit.edges)
     low_torque, high_torque = torque_extremes(orbit)
+    low_supply, high_supply = extremes(lambda at, _: chamber.supply_at(at), orbit.edges)
     output = torque * w
     found |= {
         "mean_torque": torque,
@@ -272,12 +290,14 @@ def results(orbit: Orbit, harmonics: int) -> dict[str, float]:
         "hydromechanical_efficiency": torque / ideal,
         "input_power": input_power,
         "output_power": output,
+        "line_loss": quad.mean(in_line),
         "throttling_loss": m.pistons * quad.mean(through),
         "leakage_loss": m.pistons * quad.mean(leaking),
         "friction_loss": m.pistons * quad.mean(m.viscous_damping * speed**2 + contact),
         "compression_loss": m.pistons * quad.mean(compressing),
         "min_pressure": low_pressure,
         "max_pressure": high_pressure,
+        "supply_pressure_swing": high_supply - low_supply,
         "min_contact_force": extremes(lambda at, i: motion(orbit, at, i).force, orbit.edges)[0],
         "max_contact_stress": extremes(
             lambda at, i: contact_stress(m, motion(orbit, at, i)), orbit.edges
