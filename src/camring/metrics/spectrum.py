@@ -18,7 +18,7 @@ from camring.numerics.quantity import Q
 from camring.physics.cycle import Cycle
 from camring.physics.piston_state import PistonState, sample_elements
 
-QUADRATURE_POINTS = 6
+QUADRATURE_POINTS = 4
 
 
 class QuadratureSamples(NamedTuple):

@@ -20,11 +20,13 @@ class Equation(eqx.Module):
     `rate_law` is elementwise in forcing and state. `forcing_law(parameters,
     start, width, fraction)` gives the forcing at the same fractions of every
     element, leaves of shape (point, element); it is asked once for each mesh.
+    `guess_law(parameters, forcing)` is elementwise, too.
     """
 
     parameters: Any
     rate_law: Callable[..., Float[Array, "*grid"]] = eqx.field(static=True)
     forcing_law: Callable[..., Forcing] = eqx.field(static=True)
+    guess_law: Callable[..., Float[Array, "*grid"]] = eqx.field(static=True)
     kinks: tuple[Float[Array, ""], ...] = ()
     """States at which the rate's slope may jump."""
 
@@ -41,8 +43,12 @@ class Equation(eqx.Module):
         """The forcing at fractions of every element, leaves (point, element)."""
         return self.forcing_law(self.parameters, mesh.start, mesh.width, fraction)
 
+    def guess(self, forcing: Forcing) -> Float[Array, "*grid"]:
+        """A state to begin with, from the forcing at the same place alone."""
+        return self.guess_law(self.parameters, forcing)
+
     def frozen(self) -> "Equation":
         """The same equation, through which no derivative passes to its parameters."""
         constant = jax.tree.map(stop_gradient, self.parameters)
         kinks = jax.tree.map(stop_gradient, self.kinks)
-        return Equation(constant, self.rate_law, self.forcing_law, kinks)
+        return Equation(constant, self.rate_law, self.forcing_law, self.guess_law, kinks)

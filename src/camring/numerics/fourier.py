@@ -28,21 +28,26 @@ def _powers_matrix(points: int) -> np.ndarray:
     return np.linalg.inv(at[:, None] ** np.arange(points))
 
 
-def _integrate(
-    powers: Float[Array, "element power wave"], width: Float[Array, " element"]
-) -> Float[Array, "element power wave"]:
+def _integrate(powers: list[Array], width: Float[Array, " element"]) -> list[Array]:
     """The periodic integral of a piecewise polynomial, up to a constant: one power more.
 
-    The mean is taken off first, so that what remains closes over the period.
+    Coefficients (wave, element) in ascending powers of the element fraction. The
+    mean is taken off first, so that what remains closes over the period.
     """
-    size = powers.shape[1]
-    over = (width[:, None, None] / np.arange(1, size + 1)[:, None]) * powers
-    total = jnp.sum(over, axis=(0, 1))
-    mean = total / jnp.sum(width)
-    over = over.at[:, 0].add(-width[:, None] * mean)
-    whole = jnp.cumsum(jnp.sum(over, axis=1), axis=0)
-    before = jnp.concatenate([jnp.zeros_like(whole[:1]), whole[:-1]])
-    return jnp.concatenate([before[:, None], over], axis=1)
+    over = [width / (power + 1) * each for power, each in enumerate(powers)]
+    whole = _total(over)
+    mean = jnp.sum(whole, axis=-1, keepdims=True) / jnp.sum(width)
+    over[0] = over[0] - width * mean
+    whole = whole - width * mean
+    before = jnp.cumsum(whole, axis=-1) - whole
+    return [before, *over]
+
+
+def _total(arrays: list[Array]) -> Array:
+    total = arrays[0]
+    for each in arrays[1:]:
+        total = total + each
+    return total
 
 
 def harmonics(
@@ -62,15 +67,18 @@ def harmonics(
     -----
     Positions count from the first node `x0` of the mesh, so phases do too.
     """
-    powers = jnp.einsum("pi,wie->epw", _powers_matrix(values.shape[1]), values)
+    points = values.shape[1]
+    powers = [
+        _total([float(row[i]) * values[:, i] for i in range(points)])
+        for row in _powers_matrix(points)
+    ]
     for _ in range(INTEGRATIONS):
         powers = _integrate(powers, mesh.width)
 
     samples = 2 ** int(np.ceil(np.log2(SAMPLES_PER_HARMONIC * count)))
     element, fraction = mesh.locate(mesh.start[0] + period / samples * jnp.arange(samples))
-    rows = powers[element]
-    sampled = rows[:, -1]
-    for power in range(rows.shape[1] - 2, -1, -1):
-        sampled = sampled * fraction[:, None] + rows[:, power]
-    found = jnp.fft.rfft(sampled.T, axis=-1)[:, 1 : count + 1] / samples
+    sampled = powers[-1][:, element]
+    for each in powers[-2::-1]:
+        sampled = sampled * fraction + each[:, element]
+    found = jnp.fft.rfft(sampled, axis=-1)[:, 1 : count + 1] / samples
     return found * (2j * np.pi / period * np.arange(1, count + 1)) ** INTEGRATIONS

@@ -16,6 +16,10 @@ LAYER_ELEMENTS = 2
 """Elements kept for the thin layer behind each sharp breakpoint."""
 
 
+ROUNDING = 1e-12
+"""Of the range of the orbit: below it a cubic coefficient is not trusted."""
+
+
 class Breakpoints(NamedTuple):
     """Where the forcing is not smooth, ascending within one period; may coincide."""
 
@@ -122,22 +126,6 @@ def follow_breakpoints(mesh: Mesh, breakpoints: Float[Array, " breakpoint"], per
     share = stop_gradient(jnp.where(span > 0, mesh.width / safe, 0.0))
     moving = (end - begin)[segment]
     return Mesh(begin[segment] + left * moving, share * moving, mesh.is_first)
-
-
-def curvature_density(
-    mesh: Mesh, nodes: Float[Array, " node"], period: float
-) -> Float[Array, " element"]:
-    """Elements wanted for each unit of length by a first-order solution."""
-    extent = jnp.max(nodes) - jnp.min(nodes) + 1e-300
-    width = jnp.maximum(mesh.width, 1e-14 * period)
-    slope = jnp.diff(nodes) / width / extent
-    bend = jnp.abs(slope - jnp.roll(slope, 1)) / ((width + jnp.roll(width, 1)) / 2)
-    density = jnp.sqrt(jnp.maximum(bend, jnp.roll(bend, -1)))
-    return _level(jnp.minimum(density, 1e6 / period), mesh, period)
-
-
-ROUNDING = 1e-12
-"""Of the range of the orbit: below it a cubic coefficient is not trusted."""
 
 
 def fourth_derivative_density(

@@ -14,8 +14,11 @@ growths is the Floquet multiplier of the orbit, so the periodic solve costs one
 pass and tells how unique the orbit is.
 
 The mesh (`mesh.py`) has a fixed number of elements and keeps every breakpoint
-as a node. It is laid by equidistribution: from a backward Euler sweep on a
-graded mesh, and again from the fourth derivative of the collocation solution.
+as a node. Newton begins on a small graded mesh, from states guessed place by
+place from the forcing alone (a chamber that stands still under its ports), and
+needs five to ten steps there, twenty where air expands to a hundredth of an
+atmosphere. From that solution, and again from the next ones, the mesh is laid
+by equidistribution of the fourth derivative.
 
 Derivatives pass through one last Newton step taken from a constant, which is
 the implicit function theorem on the discrete orbit; the mesh moves with its
@@ -36,11 +39,9 @@ from jaxtyping import Array, Float, Int
 
 from camring.numerics.crossing import crossings, with_nodes_at
 from camring.numerics.equation import Equation, Forcing
-from camring.numerics.first_guess import backward_euler, stage_guess
 from camring.numerics.mesh import (
     Breakpoints,
     Mesh,
-    curvature_density,
     equidistribute,
     follow_breakpoints,
     fourth_derivative_density,
@@ -63,7 +64,7 @@ class PeriodicResolution(NamedTuple):
     """Elements in one period, more than the breakpoints take for themselves."""
     refinements: int = 1
     """Times the mesh is laid anew from a collocation solution."""
-    iterations: int = 24
+    iterations: int = 40
     """Newton iterations at most, on each collocation mesh."""
     tolerance: float = 1e-9
     """Newton stops when its step is this small against the range of the orbit; it is
@@ -115,7 +116,6 @@ def solve_periodic(
     equation: Equation,
     breakpoints: Breakpoints,
     period: float,
-    guess: Float[Array, ""],
     resolution: PeriodicResolution,
 ) -> Orbit:
     """The periodic solution of an equation.
@@ -124,8 +124,6 @@ def solve_periodic(
     ----------
     equation
         Its rate should decrease with the state, or the orbit may not be unique.
-    guess
-        A state from which a backward Euler sweep may begin.
 
     Notes
     -----
@@ -135,19 +133,14 @@ def solve_periodic(
     """
     fixed = jax.tree.map(stop_gradient, breakpoints)
     frozen = equation.frozen()
-    elements = resolution.elements
 
     mesh = graded_mesh(fixed.position, period)
-    nodes = backward_euler(frozen, mesh, stop_gradient(guess), sweeps=2)
-    density = curvature_density(mesh, nodes, period)
-    layer = _layer_width(frozen, mesh, nodes[:-1], period, fixed)
-    mesh = equidistribute(mesh, density, fixed, layer, period, elements)
-    nodes = backward_euler(frozen, mesh, nodes[-1], sweeps=1)
-    at_stages = frozen.forcing(mesh, jnp.asarray(STAGES))
-    stages = stage_guess(frozen, at_stages, mesh, nodes, STAGES)
     tolerances = [resolution.rough_tolerance] * resolution.refinements + [resolution.tolerance]
     limit = resolution.iterations
-    stages, iterations = _newton(frozen, at_stages, mesh, stages, tolerances[0], limit)
+    at_stages = frozen.forcing(mesh, jnp.asarray(STAGES))
+    stages, iterations = _newton(
+        frozen, at_stages, mesh, frozen.guess(at_stages), tolerances[0], limit
+    )
 
     for tolerance in tolerances[1:]:
         node_state, stages, _ = _periodic_step(frozen, at_stages, mesh, stages)
@@ -155,7 +148,7 @@ def solve_periodic(
         extent = _extent(stages)
         density = fourth_derivative_density(mesh, powers[3], extent, period)
         layer = _layer_width(frozen, mesh, node_state, period, fixed)
-        finer = equidistribute(mesh, density, fixed, layer, period, elements)
+        finer = equidistribute(mesh, density, fixed, layer, period, resolution.elements)
         for level in frozen.kinks:
             finer = with_nodes_at(finer, crossings(mesh, powers, level))
         stages = _interpolate(mesh, powers, finer.at(jnp.asarray(STAGES)))

@@ -42,7 +42,7 @@ def combine(factors: np.ndarray, arrays: list[Array]) -> Array:
     return total
 
 
-def horner(powers: Array, fraction: Array) -> Array:
+def horner(powers: Array | list[Array], fraction: Array) -> Array:
     """A polynomial from its coefficients along the first axis, lowest power first."""
     total = powers[-1]
     for coefficient in powers[-2::-1]:

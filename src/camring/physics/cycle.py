@@ -25,6 +25,7 @@ from camring.physics.pressure import exchange_rate, pressure_slope
 from camring.physics.resolution import Resolution
 
 CONVERGED_RESIDUAL = 1e-7
+SHUT = 1e-3  # share of a port's area below which a first guess takes it for closed
 UNIQUE_MARGIN = 1e-9  # of the oil in a chamber, renewed in a period
 
 
@@ -67,6 +68,16 @@ def _forcing(parameters: tuple, start: Array, width: Array, fraction: Array) -> 
     return chamber_between(motor, reference, start, width, fraction)[1]
 
 
+def _quasi_steady(parameters: tuple, chamber: Chamber) -> Array:
+    """State of a chamber that stands still: a mean of the ports' pressures by their openings."""
+    motor, fluid, point, _ = parameters
+    supply, back = chamber.supply_area, chamber.return_area
+    closed = SHUT * motor.valve_plate.port_area
+    middle = (point.supply_pressure + point.return_pressure) / 2
+    total = supply * point.supply_pressure + back * point.return_pressure + closed * middle
+    return fluid.state(total / (supply + back + closed))
+
+
 def _kinks(motor: Motor, fluid: AbstractFluid, point: OperatingPoint) -> tuple[Array, ...]:
     """States at which a law bends: the fluid's own, and the ports' where the orifice does."""
     ports = (point.supply_pressure, point.return_pressure) if motor.orifice.bends_at_zero else ()
@@ -106,7 +117,6 @@ def simulate(
     breakpoints = motor.breakpoints()
     pitches = motor.lobes // motor.cam.repeats
     elements = resolution.elements * pitches + motor.promised_elements()
-    guess = fluid.state((point.supply_pressure + point.return_pressure) / 2)
 
     def orbit_at(held: OperatingPoint) -> Orbit:
         """With both port pressures constant."""
@@ -115,11 +125,11 @@ def simulate(
                 (motor, fluid, held, reference),
                 _state_rate,
                 _forcing,
+                _quasi_steady,
                 _kinks(motor, fluid, held),
             ),
             breakpoints,
             motor.cam.period,
-            guess,
             PeriodicResolution(elements, resolution.refinements),
         )
 

@@ -14,13 +14,13 @@ class Resolution:
     """
 
     elements: int = 320
-    refinements: int = 2
+    refinements: int = 3
     harmonics: int = 600
 
     @classmethod
     def coarse(cls) -> "Resolution":
         """For searching: objective terms to about 1e-4."""
-        return cls(elements=96, refinements=1)
+        return cls(elements=160, refinements=2)
 
     @classmethod
     def fine(cls) -> "Resolution":
