@@ -67,11 +67,28 @@ supply_width = "28.4 deg"
 return_width = "28.4 deg"
 shift = "0 deg"                               # turns all windows against the cam
 ramp = 0.35                                   # share of a window over which it opens and closes
+# notch_angle = "1 deg"                       # a relief notch before each window ...
+# notch_area = 0.02                           # ... and its share of the port area
+# orifice = "laminar-turbulent"               # needs fluid.viscosity, or an oil by name
+
+# The oil before the supply windows, fed through a line: its pressure then ripples, too.
+# [motor.manifold]
+# supply_volume = "200 cm^3"
+# line_conductance = "40 L/min/bar"
+
+# Leakage and film friction between piston and bore, beside the coefficients above.
+# [motor.gap]
+# clearance = "15 um"
+# length = "30 mm"
 
 [fluid]
 density = "870 kg/m^3"
 bulk_modulus = "1.4 GPa"
 vapour_pressure = "3 kPa"
+# law = "aerated"                             # oil with air in it, mass conserved:
+# air_fraction = 0.005                        # by volume, at atmospheric pressure
+# oil = "ISO VG 46"                           # stands for the values that are not given ...
+# temperature = "50 degC"                     # ... at this temperature
 
 # As many as the motor has duties; their weights make one objective of them.
 [[operating_points]]

@@ -70,10 +70,10 @@ def _results(data: ReportData) -> str:
 
 
 _ABOVE_ONE = (
-    "A volumetric efficiency above 100 % is a trait of the constant oil: it counts flow by volume, "
-    "the same at port and at chamber pressure, so oil that is pressed together by the piston "
-    "before the supply port opens is not counted as supplied. The aerated oil law, which keeps "
-    "mass, is free of it."
+    "A volumetric efficiency above 100 %: between the ports the piston presses the oil in its "
+    "chamber up to supply pressure itself, so the supply port need not deliver it. The shaft "
+    "pays for that, in the hydromechanical efficiency. With the constant oil flow is counted by "
+    "volume at port and chamber pressure alike, which makes the number larger still."
 )
 
 
