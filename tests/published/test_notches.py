@@ -29,7 +29,7 @@ from camring.physics.resolution import Resolution
 PISTONS, LOBES = 8, 6
 PITCH = 2 * pi / LOBES
 ANGLES = PITCH * np.array([0.005, 0.01, 0.02, 0.03, 0.04])
-AREAS = np.array([0.003, 0.01, 0.03, 0.1])
+AREAS = np.array([0.003, 0.01, 0.03, 0.1, 0.8])
 
 
 def motor_with(notch):
