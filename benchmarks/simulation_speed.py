@@ -61,12 +61,28 @@ def main() -> None:
     motor, fluid, point = system.motor, system.fluid, system.operating_points[0]
     harmonics = motor_file.goal.harmonics
 
-    def all_results(resolution: Resolution, fluid: AbstractFluid):
-        def run(radii):
-            changed = eqx.tree_at(lambda m: m.cam.control_radii, motor, radii)
-            return summarise(simulate(changed, fluid, point, resolution), harmonics)
+    # Two programs, as in `camring.simulate` and `camring.summarise`.
+    def programs(resolution: Resolution, batched: bool):
+        def cycle_of(motor, fluid):
+            return simulate(motor, fluid, point, resolution)
 
-        return run
+        def metrics_of(cycle):
+            return summarise(cycle, harmonics)
+
+        if batched:
+            axes = eqx.tree_at(
+                lambda m: m.cam.control_radii, jax.tree.map(lambda _: None, motor), 0, is_leaf=none
+            )
+            cycle_of = eqx.filter_vmap(cycle_of, in_axes=(axes, None))
+            metrics_of = eqx.filter_vmap(metrics_of)
+        first, second = eqx.filter_jit(cycle_of), eqx.filter_jit(metrics_of)
+        return lambda radii, fluid: second(first(with_radii(radii), fluid))
+
+    def none(leaf):
+        return leaf is None
+
+    def with_radii(radii):
+        return eqx.tree_at(lambda m: m.cam.control_radii, motor, radii)
 
     radii = motor.cam.control_radii
     random = np.random.default_rng(0)
@@ -77,12 +93,16 @@ def main() -> None:
     rival = seconds(lambda: independent_results(motor, fluid, point, harmonics, 1e-9), repeats=1)
     rows["SciPy LSODA, tolerance 1e-9"] = rival
     for rung, oil in (("constant modulus", fluid), ("with air", aerated(fluid))):
-        one = jax.jit(all_results(Resolution(), oil))
-        rows[f"one motor, {rung}"] = seconds(lambda one=one: one(radii))
+        whole = jax.jit(
+            lambda radii, oil=oil: summarise(simulate(with_radii(radii), oil, point), harmonics)
+        )
+        rows[f"one motor in one program, {rung}"] = seconds(lambda whole=whole: whole(radii))
+        one = programs(Resolution(), batched=False)
+        rows[f"one motor, two programs, {rung}"] = seconds(lambda: one(radii, oil))
         for name, resolution in (("final", Resolution()), ("search", Resolution.coarse())):
-            batch = jax.jit(jax.vmap(all_results(resolution, oil)))
+            batch = programs(resolution, batched=True)
             rows[f"each of {designs}, {name} resolution, {rung}"] = (
-                seconds(lambda batch=batch: batch(many), repeats=3) / designs
+                seconds(lambda batch=batch, oil=oil: batch(many, oil), repeats=3) / designs
             )
 
     print(f"{os.cpu_count()} cores; wheel motor at {float(point.shaft_speed) * 9.5493:.0f} rpm")
