@@ -98,7 +98,8 @@ def main() -> None:
         )
         rows[f"one motor in one program, {rung}"] = seconds(lambda whole=whole: whole(radii))
         one = programs(Resolution(), batched=False)
-        rows[f"one motor, two programs, {rung}"] = seconds(lambda: one(radii, oil))
+        name = f"one motor by `simulate` and `summarise`, {rung}"
+        rows[name] = seconds(lambda one=one, oil=oil: one(radii, oil))
         for name, resolution in (("final", Resolution()), ("search", Resolution.coarse())):
             batch = programs(resolution, batched=True)
             rows[f"each of {designs}, {name} resolution, {rung}"] = (
