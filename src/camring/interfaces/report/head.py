@@ -96,5 +96,5 @@ def _keys(data: ReportData) -> str:
             )
         )
     point = first[-1].duty.name
-    caption = element("p", escape(f"At the first operating point, {point}:"), class_="hidden")
+    caption = element("p", escape(f"At the first operating point, {point}:"), class_="lead small")
     return caption + element("dl", *keys, class_="keys", aria_label=f"Key figures at {point}")
