@@ -11,8 +11,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.extremum import vertex_value
+from camring.numerics.mesh import fold_starts
 from camring.numerics.quantity import Q
-from camring.numerics.spline import floor_past_rounding
 from camring.physics.cycle import Cycle
 from camring.physics.piston_state import sample_located
 
@@ -34,8 +34,7 @@ def torque_range(cycle: Cycle) -> TorqueRange:
     phases = motor.distinct_phases
     phase = motor.cam.period / phases
     from_first = mesh.start - mesh.start[0]
-    own = jnp.clip(floor_past_rounding(from_first / phase), 0, phases - 1)
-    folded = jnp.maximum(from_first - own * phase, 0)
+    own, folded = fold_starts(mesh, phase, phases)
     order = jnp.lexsort((own, folded))
     angle = folded[order]
     following = jnp.concatenate([angle[1:], jnp.full(1, phase)])

@@ -25,10 +25,10 @@ from jax.lax import stop_gradient
 from jaxtyping import Array, Float
 
 from camring.numerics.equation import Forcing
-from camring.numerics.mesh import Mesh
-from camring.numerics.periodic import Orbit
+from camring.numerics.mesh import Mesh, fold_starts
+from camring.numerics.newton import damped_newton
+from camring.numerics.periodic import Orbit, extent
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, combine, solve_stages
-from camring.numerics.spline import floor_past_rounding
 
 TOLERANCE = 1e-9  # of Newton's step against the range of the states; one more step follows
 ITERATIONS = 40
@@ -73,9 +73,7 @@ class _Linear(NamedTuple):
 def fold(mesh: Mesh, period: float, links: int) -> Mesh:
     """A mesh with nodes wherever any copy has one: every part divided like every other."""
     part = period / links
-    from_first = mesh.start - mesh.start[0]
-    own = jnp.clip(floor_past_rounding(stop_gradient(from_first) / part), 0, links - 1)
-    folded = jnp.maximum(from_first - own * part, 0)
+    _, folded = fold_starts(mesh, part, links)
     order = jnp.argsort(stop_gradient(folded))
     start = folded[order]
     width = jnp.maximum(jnp.concatenate([start[1:], jnp.full(1, part)]) - start, 0)
@@ -116,16 +114,23 @@ def solve_coupled(
     own = stop_gradient(guess).reshape(3, links, -1)
     shared = jnp.broadcast_to(stop_gradient(shared_guess), (3, 1, own.shape[-1]))
     stages = jnp.concatenate([own, shared], axis=1)
-    stages, iterations = _newton(equation.frozen(), at_stages, stop_gradient(width), stages)
+    frozen, fixed = equation.frozen(), stop_gradient(width)
+    stages, iterations = damped_newton(
+        lambda current: _step(frozen, at_stages, fixed, current)[1],
+        _own_extent,
+        stages,
+        TOLERANCE,
+        ITERATIONS,
+    )
 
     at_stages = _forcing(equation, mesh, links)
-    nodes, stages, multiplier = _step(equation, at_stages, width, stop_gradient(stages))
+    nodes, stages = _step(equation, at_stages, width, stop_gradient(stages))
     residual = _residual(equation, at_stages, width, nodes, stages)
     whole = stages[:, :-1].reshape(3, -1)
     repeated = jnp.tile(stages[:, -1], (1, links))
     return CoupledOrbit(
-        Orbit(mesh, nodes[:-1].reshape(-1), whole, multiplier, residual, iterations),
-        Orbit(mesh, jnp.tile(nodes[-1], links), repeated, multiplier, residual, iterations),
+        Orbit(mesh, nodes[:-1].reshape(-1), whole, residual, iterations),
+        Orbit(mesh, jnp.tile(nodes[-1], links), repeated, residual, iterations),
     )
 
 
@@ -168,11 +173,10 @@ def _linear(equation: CoupledEquation, forcing: Forcing, stages: Array) -> _Line
 
 def _step(
     equation: CoupledEquation, forcing: Forcing, width: Float[Array, " element"], stages: Array
-) -> tuple[Float[Array, "state element"], Float[Array, "3 state element"], Float[Array, ""]]:
+) -> tuple[Float[Array, "state element"], Float[Array, "3 state element"]]:
     """One Newton step of all collocation equations and the closure together.
 
-    Returns states at the nodes and the stages, the shared one last, and the
-    Floquet multiplier of a copy while the shared state is held.
+    Returns states at the nodes and the stages, the shared one last.
     """
     here = _linear(equation, forcing, stages)
     integrals = STAGE_INTEGRALS
@@ -237,7 +241,7 @@ def _step(
             for matrix, rest in zip(transfer, constant, strict=True)
         ]
     )
-    return nodes, updated, jnp.prod(growth[2])
+    return nodes, updated
 
 
 def _dot(factors: list[Array], arrays: list[Array]) -> Array:
@@ -268,34 +272,9 @@ def _close(
     return (products @ first + totals).T
 
 
-def _newton(
-    equation: CoupledEquation, forcing: Forcing, width: Float[Array, " element"], stages: Array
-) -> tuple[Array, Array]:
-    """Newton on the whole period until its step is small, held back as in `periodic.py`."""
-
-    def unfinished(carry: tuple) -> Array:
-        _, _, _, size, count = carry
-        return (size > TOLERANCE) & (count < ITERATIONS)
-
-    def improve(carry: tuple) -> tuple:
-        current, before, share, _, count = carry
-        _, updated, _ = _step(equation, forcing, width, current)
-        step = updated - current
-        leaps = (step * before < 0) & (2 * jnp.abs(step) > jnp.abs(before))
-        share = jnp.where(leaps, share / 2, jnp.minimum(2 * share, 1))
-        size = jnp.max(jnp.abs(step)) / _extent(updated)
-        return current + share * step, step, share, size, count + 1
-
-    start = (stages, jnp.zeros_like(stages), jnp.ones_like(stages))
-    stages, _, _, _, count = jax.lax.while_loop(
-        unfinished, improve, (*start, jnp.asarray(jnp.inf), jnp.asarray(0))
-    )
-    return stages, count
-
-
-def _extent(stages: Array) -> Float[Array, ""]:
-    own = stages[:, :-1]
-    return jnp.max(own) - jnp.min(own) + 1e-300
+def _own_extent(stages: Array) -> Float[Array, ""]:
+    """Range of a copy's orbit: the shared state moves less, but in the same unit."""
+    return extent(stages[:, :-1])
 
 
 def _residual(
@@ -316,4 +295,4 @@ def _residual(
     ends, begins = stages[2, :, -1], nodes[:, 0]
     closure = jnp.abs(ends - jnp.concatenate([jnp.roll(begins[:-1], -1), begins[-1:]]))
     largest = jnp.max(jnp.stack(errors))
-    return jnp.maximum(jnp.maximum(largest, jnp.max(inner)), jnp.max(closure)) / _extent(stages)
+    return jnp.maximum(jnp.maximum(largest, jnp.max(inner)), jnp.max(closure)) / _own_extent(stages)

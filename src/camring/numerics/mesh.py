@@ -12,9 +12,10 @@ import numpy as np
 from jax.lax import stop_gradient
 from jaxtyping import Array, Bool, Float
 
+from camring.numerics.spline import floor_past_rounding
+
 LAYER_ELEMENTS = 2
 """Elements kept for the thin layer behind each sharp breakpoint."""
-
 
 ROUNDING = 1e-12
 """Of the range of the orbit: below it a cubic coefficient is not trusted."""
@@ -53,6 +54,15 @@ def segment_ends(breakpoints: Float[Array, " breakpoint"], period: float) -> tup
     """Where each stretch between breakpoints begins and ends."""
     following = jnp.concatenate([breakpoints[1:], breakpoints[:1] + period])
     return breakpoints, following
+
+
+def fold_starts(
+    mesh: Mesh, part: float, parts: int
+) -> tuple[Float[Array, " element"], Float[Array, " element"]]:
+    """In which of the period's equal parts each element starts, and how far behind its begin."""
+    from_first = mesh.start - mesh.start[0]
+    own = jnp.clip(floor_past_rounding(stop_gradient(from_first) / part), 0, parts - 1)
+    return own, jnp.maximum(from_first - own * part, 0)
 
 
 def graded_mesh(

@@ -10,8 +10,7 @@ Method
 Radau IIA with three stages (`radau.py`). In each element the linearised stage
 equations are a 3 x 3 system; eliminating the stages leaves
 `y[k+1] = growth[k] y[k] + offset[k]`, a cyclic recurrence whose product of
-growths is the Floquet multiplier of the orbit, so the periodic solve costs one
-pass and tells how unique the orbit is.
+growths is the Floquet multiplier of the orbit: the periodic solve costs one pass.
 
 The mesh (`mesh.py`) has a fixed number of elements and keeps every breakpoint
 as a node. Newton begins on a small graded mesh, from states guessed place by
@@ -47,6 +46,7 @@ from camring.numerics.mesh import (
     fourth_derivative_density,
     graded_mesh,
 )
+from camring.numerics.newton import damped_newton
 from camring.numerics.radau import (
     STAGE_INTEGRALS,
     STAGES,
@@ -82,8 +82,6 @@ class Orbit(eqx.Module):
     mesh: Mesh
     node_state: Float[Array, " element"]
     stage_state: Float[Array, "3 element"]
-    multiplier: Float[Array, ""]
-    """Floquet multiplier: what remains of a disturbance after one period."""
     residual: Float[Array, ""]
     """Largest error of the collocation equations, periodicity included, over the range."""
     iterations: Int[Array, ""]
@@ -111,6 +109,10 @@ class Orbit(eqx.Module):
         fraction = jnp.where(width > 0, offset / jnp.where(width > 0, width, 1), 1)
         return horner(jnp.moveaxis(self.coefficients.T[element], -1, 0), fraction)
 
+    def at_position(self, position: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
+        """State at positions within the period that the mesh covers."""
+        return _interpolate(self.mesh, self.coefficients, position)
+
 
 def solve_periodic(
     equation: Equation,
@@ -127,9 +129,9 @@ def solve_periodic(
 
     Notes
     -----
-    Nothing is raised: a residual that stays large or a multiplier at one are
-    for the caller's verdict. Traceable, batchable with `vmap`, differentiable
-    in both modes.
+    Nothing is raised: a residual that stays large, or an orbit that nothing pulls
+    disturbances back to, are for the caller's verdict. Traceable, batchable with
+    `vmap`, differentiable in both modes.
     """
     fixed = jax.tree.map(stop_gradient, breakpoints)
     frozen = equation.frozen()
@@ -143,10 +145,9 @@ def solve_periodic(
     )
 
     for tolerance in tolerances[1:]:
-        node_state, stages, _ = _periodic_step(frozen, at_stages, mesh, stages)
+        node_state, stages = _periodic_step(frozen, at_stages, mesh, stages)
         powers = element_powers(node_state, stages)
-        extent = _extent(stages)
-        density = fourth_derivative_density(mesh, powers[3], extent, period)
+        density = fourth_derivative_density(mesh, powers[3], extent(stages), period)
         layer = _layer_width(frozen, mesh, node_state, period, fixed)
         finer = equidistribute(mesh, density, fixed, layer, period, resolution.elements)
         for level in frozen.kinks:
@@ -158,14 +159,13 @@ def solve_periodic(
 
     mesh = follow_breakpoints(mesh, breakpoints.position, period)
     at_stages = equation.forcing(mesh, jnp.asarray(STAGES))
-    node_state, stages, multiplier = _periodic_step(
-        equation, at_stages, mesh, stop_gradient(stages)
-    )
+    node_state, stages = _periodic_step(equation, at_stages, mesh, stop_gradient(stages))
     residual = _collocation_residual(equation, at_stages, mesh, node_state, stages)
-    return Orbit(mesh, node_state, stages, multiplier, residual, iterations)
+    return Orbit(mesh, node_state, stages, residual, iterations)
 
 
-def _extent(states: Array) -> Float[Array, ""]:
+def extent(states: Array) -> Float[Array, ""]:
+    """Range of the states, which errors are measured against; never nil."""
     return jnp.max(states) - jnp.min(states) + 1e-300
 
 
@@ -186,10 +186,10 @@ def _layer_width(
 
 def _periodic_step(
     equation: Equation, at_stages: Forcing, mesh: Mesh, stages: Float[Array, "3 element"]
-) -> tuple[Float[Array, " element"], Float[Array, "3 element"], Float[Array, ""]]:
+) -> tuple[Float[Array, " element"], Float[Array, "3 element"]]:
     """One Newton step of all collocation equations and periodicity together.
 
-    Returns node states, stage states and the Floquet multiplier.
+    Returns node states and stage states.
     """
     value, slope = equation.rate_and_slope(at_stages, stages)
     slope = stop_gradient(slope)
@@ -216,7 +216,7 @@ def _periodic_step(
     (multiplier, total), (product, before) = jax.lax.scan(compose, unit, last, unroll=8)
     node_state = product * (total / (1 - multiplier)) + before
     updated = [stages[i] + growth[i] * node_state + offset[i] for i in range(3)]
-    return node_state, jnp.stack(updated), multiplier
+    return node_state, jnp.stack(updated)
 
 
 def _newton(
@@ -227,31 +227,10 @@ def _newton(
     tolerance: float,
     limit: int,
 ) -> tuple[Float[Array, "3 element"], Int[Array, ""]]:
-    """Newton on the whole period until its step is small.
+    def improved(current: Float[Array, "3 element"]) -> Float[Array, "3 element"]:
+        return _periodic_step(equation, at_stages, mesh, current)[1]
 
-    Against a rate like a root with its sign, which turns steep where a flow
-    reverses, Newton leaps to and fro for ever. A stage whose step turns back
-    without shrinking takes half of it, and wins its full step back later.
-    """
-
-    def unfinished(carry: tuple) -> Array:
-        _, _, _, size, count = carry
-        return (size > tolerance) & (count < limit)
-
-    def improve(carry: tuple) -> tuple:
-        current, before, share, _, count = carry
-        _, updated, _ = _periodic_step(equation, at_stages, mesh, current)
-        step = updated - current
-        leaps = (step * before < 0) & (2 * jnp.abs(step) > jnp.abs(before))
-        share = jnp.where(leaps, share / 2, jnp.minimum(2 * share, 1))
-        size = jnp.max(jnp.abs(step)) / _extent(updated)
-        return current + share * step, step, share, size, count + 1
-
-    start = (stages, jnp.zeros_like(stages), jnp.ones_like(stages))
-    stages, _, _, _, count = jax.lax.while_loop(
-        unfinished, improve, (*start, jnp.asarray(jnp.inf), jnp.asarray(0))
-    )
-    return stages, count
+    return damped_newton(improved, extent, stages, tolerance, limit)
 
 
 def _interpolate(
@@ -276,4 +255,4 @@ def _collocation_residual(
         for i, row in enumerate(STAGE_INTEGRALS)
     ]
     closure = jnp.abs(jnp.roll(stages[2], 1) - node_state)
-    return jnp.max(jnp.stack([*errors, closure])) / _extent(stages)
+    return jnp.max(jnp.stack([*errors, closure])) / extent(stages)

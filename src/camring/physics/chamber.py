@@ -31,6 +31,17 @@ def chamber_between(
     return radius, chamber_at(motor, reference, angle, radius)
 
 
+def chamber_alone(
+    parameters: tuple,
+    start: Q[Float[Array, " element"], "rad"],
+    width: Q[Float[Array, " element"], "rad"],
+    fraction: Float[Array, " point"],
+) -> Chamber:
+    """The chamber as a solver asks for it: parameters are motor, fluid, point and reference."""
+    motor, _, _, reference = parameters
+    return chamber_between(motor, reference, start, width, fraction)[1]
+
+
 def chamber_at(
     motor: Motor,
     reference: Q[Float[Array, ""], "m"],

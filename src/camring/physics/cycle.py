@@ -16,12 +16,12 @@ from camring.numerics.periodic import Orbit, PeriodicResolution, solve_periodic
 from camring.numerics.quantity import Q
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES
 from camring.numerics.verdict import Verdict, verdict
-from camring.physics.chamber import Chamber, chamber_between
+from camring.physics.chamber import Chamber, chamber_alone, chamber_between
 from camring.physics.fluid import AbstractFluid
 from camring.physics.manifold import at_supply, expected_pressure, solve_with_manifold
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
-from camring.physics.pressure import exchange_rate, pressure_slope
+from camring.physics.pressure import exchange_rate, state_rate
 from camring.physics.resolution import Resolution
 
 CONVERGED_RESIDUAL = 1e-7
@@ -58,14 +58,7 @@ def reference_radius(motor: Motor) -> Q[Float[Array, ""], "m"]:
 
 def _state_rate(parameters: tuple, chamber: Chamber, state: Array) -> Array:
     motor, fluid, point, _ = parameters
-    pressure = fluid.pressure(state)
-    slope = pressure_slope(motor, fluid, point, chamber, pressure)
-    return fluid.state_slope(pressure) * slope
-
-
-def _forcing(parameters: tuple, start: Array, width: Array, fraction: Array) -> Chamber:
-    motor, _, _, reference = parameters
-    return chamber_between(motor, reference, start, width, fraction)[1]
+    return state_rate(motor, fluid, point, chamber, state)
 
 
 def _quasi_steady(parameters: tuple, chamber: Chamber) -> Array:
@@ -124,7 +117,7 @@ def simulate(
             Equation(
                 (motor, fluid, held, reference),
                 _state_rate,
-                _forcing,
+                chamber_alone,
                 _quasi_steady,
                 _kinks(motor, fluid, held),
             ),

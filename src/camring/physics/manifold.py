@@ -19,11 +19,11 @@ from camring.numerics.coupled import CoupledEquation, CoupledOrbit, fold, solve_
 from camring.numerics.periodic import Orbit
 from camring.numerics.quantity import Q
 from camring.numerics.radau import STAGES
-from camring.physics.chamber import Chamber, chamber_between
+from camring.physics.chamber import Chamber, chamber_alone
 from camring.physics.fluid import AbstractFluid
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
-from camring.physics.pressure import port_flows, pressure_slope
+from camring.physics.pressure import port_flows, state_rate
 
 
 def at_supply(point: OperatingPoint, pressure: Q[Float[Array, "*grid"], "Pa"]) -> OperatingPoint:
@@ -72,13 +72,10 @@ def solve_with_manifold(
     """
     links = motor.distinct_phases
     mesh = fold(uncoupled.mesh, motor.cam.period, links)
-    element, fraction = uncoupled.mesh.locate(
-        uncoupled.mesh.start[0]
-        + (mesh.at(jnp.asarray(STAGES)) - uncoupled.mesh.start[0]) % motor.cam.period
-    )
-    guess = uncoupled.at_offset(element, fraction * uncoupled.mesh.width[element])
+    first = uncoupled.mesh.start[0]
+    guess = uncoupled.at_position(first + (mesh.at(jnp.asarray(STAGES)) - first) % motor.cam.period)
     equation = CoupledEquation(
-        (motor, fluid, point, reference), _rate, _draw, _gallery_rate, _chamber
+        (motor, fluid, point, reference), _rate, _draw, _gallery_rate, chamber_alone
     )
     return solve_coupled(equation, mesh, links, guess, fluid.state(gallery_pressure))
 
@@ -86,16 +83,9 @@ def solve_with_manifold(
 Parameters = tuple[Motor, AbstractFluid, OperatingPoint, Array]
 
 
-def _chamber(parameters: Parameters, start: Array, width: Array, fraction: Array) -> Chamber:
-    motor, _, _, reference = parameters
-    return chamber_between(motor, reference, start, width, fraction)[1]
-
-
 def _rate(parameters: Parameters, chamber: Chamber, state: Array, gallery: Array) -> Array:
     motor, fluid, point, _ = parameters
-    pressure, here = fluid.pressure(state), at_supply(point, fluid.pressure(gallery))
-    slope = pressure_slope(motor, fluid, here, chamber, pressure)
-    return fluid.state_slope(pressure) * slope
+    return state_rate(motor, fluid, at_supply(point, fluid.pressure(gallery)), chamber, state)
 
 
 def _draw(parameters: Parameters, chamber: Chamber, state: Array, gallery: Array) -> Array:

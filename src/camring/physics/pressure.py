@@ -77,6 +77,19 @@ def pressure_slope(
     return (net - here.content * chamber.volume_slope) / (here.content_slope * chamber.volume)
 
 
+def state_rate(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    chamber: Chamber,
+    state: Float[Array, "*grid"],
+) -> Float[Array, "*grid"]:
+    """The same in the state that the fluid is solved in, 1/rad."""
+    pressure = fluid.pressure(state)
+    slope = pressure_slope(motor, fluid, point, chamber, pressure)
+    return fluid.state_slope(pressure) * slope
+
+
 def exchange_rate(
     motor: Motor,
     fluid: AbstractFluid,
