@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from camring.interfaces.beside import scale_of
 from camring.interfaces.compiled import assess, cycles, summarise_compiled
 from camring.interfaces.config import MotorFile
 from camring.interfaces.evaluator import outcome_of
@@ -20,20 +21,6 @@ from camring.physics.resolution import Resolution
 if TYPE_CHECKING:
     from camring.physics.cycle import Cycle
 
-# Results that a ripple or a margin makes small: their error counts beside another result.
-_BESIDE = {
-    "line_loss": "input_power",
-    "supply_pressure_swing": "max_pressure",
-    "throttling_loss": "input_power",
-    "leakage_loss": "input_power",
-    "friction_loss": "input_power",
-    "compression_loss": "input_power",
-    "min_pressure": "max_pressure",
-    "pressure_overshoot": "max_pressure",
-    "pressure_undershoot": "max_pressure",
-    "min_lift": "stroke",
-    "max_lift": "stroke",
-}
 _NO_RESULTS = ("power_residual",)
 
 
@@ -137,7 +124,7 @@ def _gaps(timing: Timing) -> tuple[float, float]:
 
 
 def _relative(name: str, errors: dict[str, float], results: Any) -> float:
-    scale = abs(results[_BESIDE.get(name, name)])
+    scale = scale_of(name, results)
     if name == "min_contact_force":
         scale = max(scale, abs(results["ideal_torque"] / results["stroke"]))
     error = errors[name] / scale if scale > 0 else errors[name]

@@ -13,6 +13,7 @@ from typing import Any
 
 import jax.numpy as jnp
 
+from camring.interfaces.beside import scale_of
 from camring.interfaces.compiled import assess
 from camring.interfaces.config import MotorFile
 from camring.interfaces.evaluator import outcome_of
@@ -30,21 +31,6 @@ GIVEN, BEST = "given", "best"
 AGREEMENT = 1e-4  # of a result, or of what it is small beside
 SOLVER_TOLERANCE = 1e-9  # of the independent solver; its results are good to about 1e-7
 
-# These may be near zero, and are then judged against what they are small beside: a
-# loss against the power it is taken from, a swing beyond the ports against the pressure.
-BESIDE = {
-    "line_loss": "input_power",
-    "throttling_loss": "input_power",
-    "leakage_loss": "input_power",
-    "friction_loss": "input_power",
-    "compression_loss": "input_power",
-    "min_pressure": "max_pressure",
-    "pressure_overshoot": "max_pressure",
-    "pressure_undershoot": "max_pressure",
-    "supply_pressure_swing": "max_pressure",
-    "vapour_margin": "max_pressure",
-    "air_release_margin": "max_pressure",
-}
 RIPPLES = {
     "torque_ripple",
     "torque_ripple_true_rms",
@@ -190,7 +176,7 @@ def _agreement(claimed: Outcome, seen: Outcome, whose: str) -> Check:
     largest, where = 0.0, "nothing"
     for before, after in zip(claimed.results, seen.results, strict=True):
         for name in sorted(before.keys() & after.keys() & QUANTITIES.keys()):
-            scale = max(abs(after[name]), _smallest_scale(name, after))
+            scale = max(scale_of(name, after), RIPPLE_SCALE if name in RIPPLES else 1e-300)
             difference = abs(before[name] - after[name]) / scale
             if math.isnan(difference):
                 difference = math.inf
@@ -199,12 +185,6 @@ def _agreement(claimed: Outcome, seen: Outcome, whose: str) -> Check:
     return Check(
         f"agreement {whose}", largest <= AGREEMENT, f"largest difference {largest:.1e}, in {where}"
     )
-
-
-def _smallest_scale(name: str, results: Mapping[str, float]) -> float:
-    if name in RIPPLES:
-        return RIPPLE_SCALE
-    return abs(results[BESIDE[name]]) if name in BESIDE else 1e-300
 
 
 def _view(outcome: Outcome) -> dict[str, Any]:
