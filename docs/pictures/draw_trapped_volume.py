@@ -9,10 +9,12 @@ from pathlib import Path
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
+from jax import Array
 
 from camring.interfaces.config import read_motor_file
 from camring.physics.cycle import simulate
 from camring.physics.fluid import ConstantFluid
+from camring.physics.motor import Motor
 from camring.physics.waveforms import waveforms
 
 HERE = Path(__file__).parent
@@ -22,13 +24,16 @@ WIDTH, HEIGHT, LEFT, TOP, RIGHT, BOTTOM = 760, 420, 70, 40, 20, 50
 COLOURS = {"constant modulus": "#b5432a", "with 0.5 % of air, mass conserved": "#1f6f9f"}
 
 
+def window_widths(motor: Motor) -> tuple[Array, Array]:
+    return motor.valve_plate.supply.width, motor.valve_plate.return_.width
+
+
 def pressures() -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Chamber pressure over one lobe pitch, bar, for each oil."""
     system = read_motor_file(MOTOR).system
     air, point = system.fluid, system.operating_points[0]
     width = jnp.asarray(pi / 6 - CLOSED)
-    where = lambda m: (m.valve_plate.supply.width, m.valve_plate.return_.width)  # noqa: E731
-    motor = eqx.tree_at(where, system.motor, (width, width))
+    motor = eqx.tree_at(window_widths, system.motor, (width, width))
     plain = ConstantFluid(
         air.density, air.bulk_modulus, air.vapour_pressure, air.transition_pressure
     )

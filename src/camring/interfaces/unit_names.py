@@ -7,7 +7,7 @@ dimension here, as it does not for pint.
 from difflib import get_close_matches
 from functools import cache
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 BASES = ("m", "kg", "s", "rad", "K")
 
@@ -104,7 +104,8 @@ def named_unit(name: str) -> Unit:
 
 
 @cache
-def _pint_registry():  # type: ignore[no-untyped-def]  # pint stays unimported until needed
+def _pint_registry() -> Any:
+    """pint's registry, which has no type before pint is imported."""
     import pint
 
     return pint.UnitRegistry()
