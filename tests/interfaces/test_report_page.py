@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import report_example as example
 
+from camring.interfaces.report import palette
 from camring.interfaces.report.data import ReportData, Verdict
 from camring.interfaces.report.figure import around
 from camring.interfaces.report.page import render
@@ -328,3 +329,26 @@ def test_a_simulation_that_failed_is_still_drawn(study):
     for svg in drawings(page):
         ElementTree.fromstring(svg)
     assert "NaN" not in page[: page.index("<script>")]
+
+
+def test_a_supply_line_has_its_rows_and_its_piece_of_the_loss_bar(study, page):
+    """Rare results: shown for a motor with a manifold, absent for one without."""
+    rows = ("Loss in the supply line", "Supply pressure, peak to peak")
+    assert not any(row in page for row in rows)
+    assert palette.LOSSES["line_loss"] not in page
+    first, second = study.designs
+    with_line = render(replace(study, designs=(_fed(first, 512.0, 3e5), _fed(second, 0.0, 0.0))))
+    assert all(row in with_line for row in rows)
+    bars = [svg for svg in drawings(with_line) if "Where the power goes" in svg]
+    assert len(bars) == len(first.results)
+    for bar in bars:
+        assert bar.count(palette.LOSSES["line_loss"]) == 2  # the key and one design's piece
+        assert "loss in the supply line" in bar
+        assert "512 W" in bar
+
+
+def _fed(design, line_loss, swing):
+    """The design with what a supply line would add to its results."""
+    more = {"line_loss": line_loss, "supply_pressure_swing": swing}
+    results = (replace(each, metrics={**each.metrics, **more}) for each in design.results)
+    return replace(design, results=tuple(results))

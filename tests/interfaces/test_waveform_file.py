@@ -4,6 +4,7 @@ import math
 
 import equinox as eqx
 import h5py
+import jax.numpy as jnp
 import motors
 import numpy as np
 import pytest
@@ -11,8 +12,9 @@ import xarray
 
 from camring.interfaces import waveform_file
 from camring.interfaces.errors import InputError
-from camring.interfaces.waveform_file import WAVEFORMS, write_waveforms
+from camring.interfaces.waveform_file import WAVEFORMS, waveform_dataset, write_waveforms
 from camring.physics.cycle import simulate
+from camring.physics.gallery import Manifold
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
@@ -62,6 +64,26 @@ def test_what_was_asked_for_is_there_with_units(dataset):
         assert np.isfinite(variable).all()
     for coordinate in dataset.coords.values():
         assert coordinate.attrs["units"]
+
+
+def test_a_manifold_brings_its_pressure(simulated):
+    system, _ = simulated
+    motor, fluid, point = system.motor, system.fluid, system.operating_points[0]
+    manifold = Manifold(jnp.asarray(2e-4), jnp.asarray(5e-9))
+    fed = eqx.tree_at(lambda m: m.manifold, motor, manifold, is_leaf=lambda leaf: leaf is None)
+    cycle = eqx.filter_jit(simulate)(fed, fluid, point, Resolution.coarse())
+    dataset = waveform_dataset(System(fed, fluid, (point,)), [cycle], samples=720)
+    assert set(dataset.data_vars) == set(WAVEFORMS)
+    gallery = dataset.gallery_pressure
+    assert gallery.dims == ("operating_point", "angle")
+    assert gallery.attrs["units"] == "Pa"
+    # The line loses some of the supply's pressure, and what is left swings with the pistons.
+    assert float(gallery.max()) < float(point.supply_pressure)
+    assert float(np.ptp(gallery.to_numpy())) > 1e-3 * float(point.pressure_drop)
+    # All pistons draw alike: a part of the revolution repeats.
+    part = 720 // np.lcm(motor.pistons, motor.lobes)
+    once = gallery[0].to_numpy()
+    np.testing.assert_allclose(once, np.roll(once, part), rtol=1e-6)
 
 
 def test_the_angle_is_one_revolution_of_the_shaft(dataset):

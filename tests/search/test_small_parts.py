@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from threadpoolctl import ThreadpoolController
 
 from camring.search.convergence import Convergence
 from camring.search.dataset import collect
 from camring.search.problem import Evaluation, best_of
 from camring.search.sampling import generator, initial_point, sobol
+from camring.search.threads import one_linear_algebra_thread
 from camring.search.trust_region import TrustRegion
 from camring.search.warp import Warp, candidate_warps
 
@@ -164,3 +166,27 @@ def test_a_trust_region_stays_in_the_box():
     region = TrustRegion(length=0.4).around(np.array([0.1, 0.5]))
     np.testing.assert_allclose(region.lower, [0.0, 0.3])
     np.testing.assert_allclose(region.upper, [0.3, 0.7])
+
+
+def linear_algebra_threads():
+    """Threads of each linear-algebra library that is loaded."""
+    libraries = ThreadpoolController().select(user_api="blas").info()
+    return [library["num_threads"] for library in libraries]
+
+
+def test_linear_algebra_is_held_to_one_thread_and_let_go_again():
+    with ThreadpoolController().limit(limits=2, user_api="blas"):
+        before = linear_algebra_threads()
+        with one_linear_algebra_thread():
+            held = linear_algebra_threads()
+        after = linear_algebra_threads()
+    assert before  # SciPy brings one
+    assert set(held) == {1}
+    assert after == before
+
+
+def test_linear_algebra_is_let_go_when_the_work_fails():
+    before = linear_algebra_threads()
+    with pytest.raises(RuntimeError), one_linear_algebra_thread():
+        raise RuntimeError
+    assert linear_algebra_threads() == before
