@@ -13,11 +13,13 @@ import numpy as np
 from hypothesis import strategies as st
 
 from camring.geometry.cam import AbstractCam, PlanarCam, RadialCam
+from camring.geometry.extremes import extreme_radius
 from camring.geometry.material import Material
 from camring.geometry.piston import Piston, Roller
 from camring.geometry.valve_plate import LinearWindow, Port, ValvePlate
 from camring.physics.fluid import ConstantFluid
 from camring.physics.friction import ViscousFriction
+from camring.physics.gallery import Manifold
 from camring.physics.leakage import ConstantLeakage
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
@@ -151,6 +153,24 @@ def sound_case(seed: int, structure: Structure | None = None) -> Case:
     return Case(motor, fluid, OperatingPoint(speed, supply, back, case))
 
 
+def with_manifold(case: Case, share: float, strokes: float) -> Case:
+    """The motor fed through a line and a gallery.
+
+    `share` of the pressure difference is lost in the line at the displaced flow;
+    the gallery holds the strokes of all pistons `strokes` times.
+    """
+    motor, area = case.motor, float(case.motor.piston.area)
+    stroke = float(extreme_radius(motor.cam, 1) - extreme_radius(motor.cam, -1))
+    swept = motor.pistons * area * stroke
+    flow = swept * motor.lobes * float(case.point.shaft_speed) / (2 * pi)
+    manifold = Manifold(strokes * swept, flow / (share * float(case.point.pressure_drop)))
+    return Case(replaced_manifold(motor, manifold), case.fluid, case.point)
+
+
+def replaced_manifold(motor, manifold):
+    return eqx.tree_at(lambda m: m.manifold, motor, manifold, is_leaf=lambda x: x is None)
+
+
 def stacked(cases: list[Case]) -> tuple:
     """Motors of one structure as one batch: (motor, fluid, point) with a leading axis."""
     trees = [tuple(case) for case in cases]
@@ -176,28 +196,35 @@ AWKWARD = (
 )
 
 
+def window_widths(case: Case):
+    plate = case.motor.valve_plate
+    return plate.supply.width, plate.return_.width
+
+
+def shaft_speed(case: Case):
+    return case.point.shaft_speed
+
+
 def awkward_case(seed: int, trouble: str, structure: Structure = STRUCTURES[0]) -> Case:
     """A sound motor with one thing pushed to where solvers have trouble."""
     rng = np.random.default_rng([77, seed])
     case = sound_case(seed, structure)
     plate = case.motor.valve_plate
     pitch = plate.pitch
-    widths = lambda c: (c.motor.valve_plate.supply.width, c.motor.valve_plate.return_.width)  # noqa: E731
-    speed = lambda c: c.point.shaft_speed  # noqa: E731
     match trouble:
         case "windows nearly touch":
             gap = 10 ** rng.uniform(-9, -3) * pitch
-            return case.changed(widths, (pitch / 2 - gap, pitch / 2 - gap))
+            return case.changed(window_widths, (pitch / 2 - gap, pitch / 2 - gap))
         case "windows overlap":
-            return case.changed(widths, tuple(pitch / 2 * rng.uniform(1.01, 1.25, size=2)))
+            return case.changed(window_widths, tuple(pitch / 2 * rng.uniform(1.01, 1.25, size=2)))
         case "trapped oil":
-            return case.changed(widths, tuple(pitch / 2 * rng.uniform(0.72, 0.82, size=2)))
+            return case.changed(window_widths, tuple(pitch / 2 * rng.uniform(0.72, 0.82, size=2)))
         case "no leakage":
             return case.changed(lambda c: c.motor.leakage.coefficient, 0.0)
         case "crawling":
-            return case.changed(speed, 1 * REVOLUTION_PER_MINUTE)
+            return case.changed(shaft_speed, 1 * REVOLUTION_PER_MINUTE)
         case "racing":
-            return case.changed(speed, 1500 * REVOLUTION_PER_MINUTE)
+            return case.changed(shaft_speed, 1500 * REVOLUTION_PER_MINUTE)
         case "high pressure":
             return case.changed(lambda c: c.point.supply_pressure, 450e5)
         case "stiff oil":

@@ -4,7 +4,15 @@ from math import pi
 
 import equinox as eqx
 import numpy as np
-from motors import REVOLUTION_PER_MINUTE, STRUCTURES, Case, Structure, sound_case
+from motors import (
+    REVOLUTION_PER_MINUTE,
+    STRUCTURES,
+    Case,
+    Structure,
+    shaft_speed,
+    sound_case,
+    window_widths,
+)
 
 from camring.geometry.notch import ReliefNotch
 from camring.geometry.window import RoundWindow
@@ -56,28 +64,32 @@ def second_rung_case(seed: int, structure: Structure = STRUCTURES[0]) -> Case:
 TROUBLES = ("trapped", "nearly touching", "crawling", "no leakage", "racing", "much air")
 
 
+def _notch(case: Case):
+    return case.motor.valve_plate.notch.angle, case.motor.valve_plate.notch.area
+
+
+def _clearance(case: Case):
+    return case.motor.gap.clearance, case.motor.leakage.coefficient
+
+
 def hard_case(seed: int, trouble: str, structure: Structure = STRUCTURES[0]) -> Case:
     """A second-rung motor pushed to where solvers have trouble."""
     rng = np.random.default_rng([99, seed])
     case = second_rung_case(seed, structure)
     pitch = case.motor.valve_plate.pitch
-    speed = lambda c: c.point.shaft_speed  # noqa: E731
-    widths = lambda c: (c.motor.valve_plate.supply.width, c.motor.valve_plate.return_.width)  # noqa: E731
-    notch = lambda c: (c.motor.valve_plate.notch.angle, c.motor.valve_plate.notch.area)  # noqa: E731
-    clearance = lambda c: (c.motor.gap.clearance, c.motor.leakage.coefficient)  # noqa: E731
     match trouble:
         case "trapped":  # closed over a good part of the stroke: vacuum, then thousands of bar
-            tight = case.changed(clearance, (1e-7, 1e-16)).changed(notch, (1e-4, 1e-4))
-            return tight.changed(widths, tuple(pitch / 2 * rng.uniform(0.6, 0.75, size=2)))
+            tight = case.changed(_clearance, (1e-7, 1e-16)).changed(_notch, (1e-4, 1e-4))
+            return tight.changed(window_widths, tuple(pitch / 2 * rng.uniform(0.6, 0.75, size=2)))
         case "nearly touching":
-            close = case.changed(widths, (pitch / 2 * (1 - 1e-6),) * 2)
-            return close.changed(speed, 20 * REVOLUTION_PER_MINUTE)
+            close = case.changed(window_widths, (pitch / 2 * (1 - 1e-6),) * 2)
+            return close.changed(shaft_speed, 20 * REVOLUTION_PER_MINUTE)
         case "crawling":
-            return case.changed(speed, 1 * REVOLUTION_PER_MINUTE)
+            return case.changed(shaft_speed, 1 * REVOLUTION_PER_MINUTE)
         case "no leakage":
-            return case.changed(clearance, (1e-8, 0.0))
+            return case.changed(_clearance, (1e-8, 0.0))
         case "racing":
-            return case.changed(speed, 1500 * REVOLUTION_PER_MINUTE)
+            return case.changed(shaft_speed, 1500 * REVOLUTION_PER_MINUTE)
         case "much air":
             return case.changed(lambda c: c.fluid.air_fraction, 0.2)
     raise ValueError(trouble)

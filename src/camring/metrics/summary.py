@@ -13,7 +13,7 @@ from camring.metrics.power_balance import power_balance
 from camring.metrics.spectrum import chamber_spectra, of_all_pistons, quadrature_samples
 from camring.metrics.stiffness import oscillator
 from camring.metrics.torque_range import torque_range
-from camring.numerics.extremum import EXTREMUM_FRACTIONS, maximum, minimum
+from camring.numerics.extremum import EXTREMUM_FRACTIONS, maximum, minimum, total_variation
 from camring.numerics.quantity import Q
 from camring.physics.cycle import Cycle
 from camring.physics.piston_state import sample_elements
@@ -91,7 +91,9 @@ def summarise(cycle: Cycle, highest_order: int = 600) -> Metrics:
     highest, lowest = extreme_radius(motor.cam, 1), extreme_radius(motor.cam, -1)
     stroke = highest - lowest
     # Falls undo rises over a period, so half the total travel is the sum of rises.
-    rises = motor.cam.repeats * jnp.sum(samples.weights * jnp.abs(piston.radius.first)) / 2
+    quarter = cycle.orbit.mesh.width / (len(EXTREMUM_FRACTIONS) - 1)
+    travel = total_variation(corners.radius.value, corners.radius.first, quarter)
+    rises = motor.cam.repeats * travel / 2
     displacement = pistons * rises * motor.piston.area
     ideal_torque = drop * displacement / (2 * pi)
     mean_torque = torque.mean

@@ -11,7 +11,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.extremum import vertex_value
-from camring.numerics.mesh import fold_starts
+from camring.numerics.mesh import folded
 from camring.numerics.quantity import Q
 from camring.physics.cycle import Cycle
 from camring.physics.piston_state import sample_located
@@ -34,9 +34,9 @@ def torque_range(cycle: Cycle) -> TorqueRange:
     phases = motor.distinct_phases
     phase = motor.cam.period / phases
     from_first = mesh.start - mesh.start[0]
-    own, folded = fold_starts(mesh, phase, phases)
-    order = jnp.lexsort((own, folded))
-    angle = folded[order]
+    own, within = folded(mesh.start, phase, phases)
+    order = jnp.lexsort((own, within))
+    angle = within[order]
     following = jnp.concatenate([angle[1:], jnp.full(1, phase)])
 
     piston = jnp.arange(phases)[:, None]

@@ -13,6 +13,9 @@ solved as `periodic.py` solves the scalar equation: Radau collocation, one Newto
 iteration for all elements and the closure together. In each element the copies
 meet in the shared state only, so stages are eliminated copy by copy, and three
 stages of the shared state remain.
+
+It is solved twice: roughly on a mesh laid from an orbit without coupling, and then
+on one laid from that solution, which knows what the copies do to one another.
 """
 
 from collections.abc import Callable
@@ -22,15 +25,25 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax.lax import stop_gradient
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
+from camring.numerics.crossing import crossings, with_nodes_at
 from camring.numerics.equation import Forcing
-from camring.numerics.mesh import Mesh, fold_starts
+from camring.numerics.mesh import (
+    Breakpoints,
+    Mesh,
+    equidistribute,
+    folded,
+    follow_breakpoints,
+    fourth_derivative_density,
+    segment_ends,
+)
 from camring.numerics.newton import damped_newton
 from camring.numerics.periodic import Orbit, extent
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, combine, solve_stages
 
 TOLERANCE = 1e-9  # of Newton's step against the range of the states; one more step follows
+ROUGH_TOLERANCE = 1e-3  # on the mesh that only serves to lay the next one
 ITERATIONS = 40
 
 
@@ -45,11 +58,15 @@ class CoupledEquation(eqx.Module):
     shared_rate: Callable[..., Array] = eqx.field(static=True)
     """`(parameters, shared, total drawn)`."""
     forcing_law: Callable[..., Forcing] = eqx.field(static=True)
+    kinks: tuple[Float[Array, ""], ...] = ()
+    """States of a copy at which its rate's slope may jump."""
+    bends_at_equality: bool = eqx.field(static=True, default=False)
+    """Whether it may jump, too, where a copy's state is the shared one."""
 
     def frozen(self) -> "CoupledEquation":
         """The same equation, through which no derivative passes to its parameters."""
-        constant = jax.tree.map(stop_gradient, self.parameters)
-        return eqx.tree_at(lambda each: each.parameters, self, constant)
+        constant = jax.tree.map(stop_gradient, (self.parameters, self.kinks))
+        return eqx.tree_at(lambda each: (each.parameters, each.kinks), self, constant)
 
 
 class CoupledOrbit(NamedTuple):
@@ -73,9 +90,9 @@ class _Linear(NamedTuple):
 def fold(mesh: Mesh, period: float, links: int) -> Mesh:
     """A mesh with nodes wherever any copy has one: every part divided like every other."""
     part = period / links
-    _, folded = fold_starts(mesh, part, links)
-    order = jnp.argsort(stop_gradient(folded))
-    start = folded[order]
+    _, within = folded(mesh.start, part, links)
+    order = jnp.argsort(stop_gradient(within))
+    start = within[order]
     width = jnp.maximum(jnp.concatenate([start[1:], jnp.full(1, part)]) - start, 0)
     shifts = mesh.start[0] + part * jnp.arange(links)
     return Mesh(
@@ -87,19 +104,21 @@ def fold(mesh: Mesh, period: float, links: int) -> Mesh:
 
 def solve_coupled(
     equation: CoupledEquation,
-    mesh: Mesh,
+    breakpoints: Breakpoints,
+    period: float,
     links: int,
-    guess: Float[Array, "3 element"],
+    elements: int,
+    uncoupled: Orbit,
     shared_guess: Float[Array, ""],
 ) -> CoupledOrbit:
-    """The periodic solution on a folded mesh.
+    """The periodic solution.
 
     Parameters
     ----------
-    mesh
-        From `fold` with the same `links`.
-    guess
-        A copy's states at the stages of the mesh, as from an orbit without coupling.
+    elements
+        Of the mesh in one period of a copy, before it is folded.
+    uncoupled
+        An orbit of a copy without coupling: the first guess, and the first mesh.
     shared_guess
         The shared state, as if it stood still.
 
@@ -108,23 +127,85 @@ def solve_coupled(
     Nothing is raised; a residual that stays large is for the caller's verdict.
     Differentiable like `solve_periodic`: one last Newton step from a constant.
     """
-    width = mesh.width.reshape(links, -1)[0]
-    frozen_mesh = jax.tree.map(stop_gradient, mesh)
-    at_stages = _forcing(equation.frozen(), frozen_mesh, links)
-    own = stop_gradient(guess).reshape(3, links, -1)
-    shared = jnp.broadcast_to(stop_gradient(shared_guess), (3, 1, own.shape[-1]))
-    stages = jnp.concatenate([own, shared], axis=1)
-    frozen, fixed = equation.frozen(), stop_gradient(width)
-    stages, iterations = damped_newton(
-        lambda current: _step(frozen, at_stages, fixed, current)[1],
-        _own_extent,
-        stages,
-        TOLERANCE,
-        ITERATIONS,
-    )
+    frozen, fixed = equation.frozen(), jax.tree.map(stop_gradient, breakpoints)
 
-    at_stages = _forcing(equation, mesh, links)
-    nodes, stages = _step(equation, at_stages, width, stop_gradient(stages))
+    def look(current: tuple, tolerance: Array) -> tuple:
+        """Solves on a mesh, and lays the next one; kept is what was solved."""
+        laid, stages = current
+        mesh = fold(laid, period, links)
+        stages, iterations = _newton(frozen, mesh, stages, tolerance)
+        orbit = _orbit(frozen, mesh, stages, iterations)
+        finer = _laid_anew(frozen, orbit, fixed, period, elements)
+        own, shared = (_at_stages(each, fold(finer, period, links), period) for each in orbit)
+        return (finer, side_by_side(own, shared, links)), (laid, stages, iterations)
+
+    alone = jax.tree.map(stop_gradient, uncoupled)
+    own = _at_stages(alone, fold(alone.mesh, period, links), period)
+    still = jnp.broadcast_to(stop_gradient(shared_guess), own.shape)
+    tolerances = jnp.array([ROUGH_TOLERANCE, TOLERANCE])
+    looks: tuple
+    _, looks = jax.lax.scan(look, (alone.mesh, side_by_side(own, still, links)), tolerances)
+    laid, stages, iterations = jax.tree.map(lambda each: each[-1], looks)
+
+    mesh = fold(laid, period, links)
+    return settle_coupled(equation, breakpoints, period, mesh, stages, iterations)
+
+
+def settle_coupled(
+    equation: CoupledEquation,
+    breakpoints: Breakpoints,
+    period: float,
+    mesh: Mesh,
+    stages: Float[Array, "3 state element"],
+    iterations: Int[Array, ""],
+) -> CoupledOrbit:
+    """A solution at hand, on a folded mesh, as a function of the equation; see `settle`."""
+    links = stages.shape[1] - 1
+    part, first = period / links, breakpoints.position[0]
+    # Every part of the period has the breakpoints of all copies.
+    _, within = folded(breakpoints.position, part, links)
+    everywhere = (first + part * jnp.arange(links)[:, None] + jnp.sort(within)).reshape(-1)
+    mesh = follow_breakpoints(mesh, everywhere, period)
+    return _orbit(equation, mesh, stop_gradient(stages), iterations)
+
+
+def _at_stages(orbit: Orbit, mesh: Mesh, period: float) -> Float[Array, "3 element"]:
+    """States at the stages of a mesh that may reach beyond the orbit's own period."""
+    first = orbit.mesh.start[0]
+    return orbit.at_position(first + (mesh.at(jnp.asarray(STAGES)) - first) % period)
+
+
+def side_by_side(own: Array, shared: Array, links: int) -> Float[Array, "3 state element"]:
+    """Copies side by side and the shared state last, from one period of each."""
+    part = shared.reshape(3, links, -1)[:, :1]
+    return jnp.concatenate([own.reshape(3, links, -1), part], axis=1)
+
+
+def _newton(
+    equation: CoupledEquation,
+    mesh: Mesh,
+    stages: Float[Array, "3 state element"],
+    tolerance: Float[Array, ""],
+) -> tuple[Float[Array, "3 state element"], Int[Array, ""]]:
+    links = stages.shape[1] - 1
+    at_stages, width = _forcing(equation, mesh, links), mesh.width.reshape(links, -1)[0]
+
+    def improved(current: Float[Array, "3 state element"]) -> Float[Array, "3 state element"]:
+        return _step(equation, at_stages, width, current)[1]
+
+    return damped_newton(improved, _own_extent, stages, tolerance, ITERATIONS)
+
+
+def _orbit(
+    equation: CoupledEquation,
+    mesh: Mesh,
+    stages: Float[Array, "3 state element"],
+    iterations: Int[Array, ""],
+) -> CoupledOrbit:
+    """One more Newton step, and what it gives as orbits over the whole period."""
+    links = stages.shape[1] - 1
+    at_stages, width = _forcing(equation, mesh, links), mesh.width.reshape(links, -1)[0]
+    nodes, stages = _step(equation, at_stages, width, stages)
     residual = _residual(equation, at_stages, width, nodes, stages)
     whole = stages[:, :-1].reshape(3, -1)
     repeated = jnp.tile(stages[:, -1], (1, links))
@@ -132,6 +213,35 @@ def solve_coupled(
         Orbit(mesh, nodes[:-1].reshape(-1), whole, residual, iterations),
         Orbit(mesh, jnp.tile(nodes[-1], links), repeated, residual, iterations),
     )
+
+
+def _laid_anew(
+    equation: CoupledEquation,
+    orbit: CoupledOrbit,
+    breakpoints: Breakpoints,
+    period: float,
+    elements: int,
+) -> Mesh:
+    """A mesh of one period, not yet folded, by what the copy does when coupled."""
+    own, shared = orbit
+    powers = own.coefficients
+    density = fourth_derivative_density(own.mesh, powers[3], extent(own.stage_state), period)
+    begin, end = segment_ends(breakpoints.position, period)
+    forcing = equation.forcing_law(equation.parameters, begin, end - begin, jnp.zeros(1))
+    state, common = (orbit.at_position(begin[None]) for orbit in (own, shared))
+
+    def rate(state: Float[Array, "1 breakpoint"]) -> Float[Array, "1 breakpoint"]:
+        return equation.rate(equation.parameters, forcing, state, common)
+
+    _, slope = jax.jvp(rate, (state,), (jnp.ones_like(state),))
+    layer = 1 / jnp.maximum(jnp.abs(slope[0]), 1 / period)
+    laid = equidistribute(own.mesh, density, breakpoints, layer, period, elements)
+    for level in equation.kinks:
+        laid = with_nodes_at(laid, crossings(own.mesh, powers, level))
+    if equation.bends_at_equality:
+        apart = powers - shared.coefficients
+        laid = with_nodes_at(laid, crossings(own.mesh, apart, jnp.zeros(())))
+    return laid
 
 
 def _forcing(equation: CoupledEquation, mesh: Mesh, links: int) -> Forcing:

@@ -1,4 +1,4 @@
-"""Largest value of a piecewise smooth function, found between its samples."""
+"""Largest value and total travel of a piecewise smooth function, found between its samples."""
 
 import jax.numpy as jnp
 import numpy as np
@@ -35,3 +35,20 @@ def vertex_value(
     inside = (bend < 0) & (jnp.abs(offset) <= 1)
     top = here - slope**2 / (2 * jnp.where(bend < 0, bend, -1.0))
     return jnp.where(inside, top, jnp.maximum(jnp.maximum(before, after), here))
+
+
+def total_variation(
+    value: Float[Array, "point element"],
+    slope: Float[Array, "point element"],
+    spacing: Float[Array, " element"],
+) -> Float[Array, ""]:
+    """All rises and all falls together, from equidistant samples of each element.
+
+    Between two samples with slopes of one sign it is the difference of the values;
+    where the slope turns, it is taken as linear.
+    """
+    before, after = slope[:-1], slope[1:]
+    turns = before * after < 0
+    bend = jnp.where(turns, jnp.abs(after - before), 1.0)
+    about_the_turn = spacing * (before**2 + after**2) / (2 * bend)
+    return jnp.sum(jnp.where(turns, about_the_turn, jnp.abs(value[1:] - value[:-1])))

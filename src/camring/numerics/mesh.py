@@ -56,11 +56,14 @@ def segment_ends(breakpoints: Float[Array, " breakpoint"], period: float) -> tup
     return breakpoints, following
 
 
-def fold_starts(
-    mesh: Mesh, part: float, parts: int
-) -> tuple[Float[Array, " element"], Float[Array, " element"]]:
-    """In which of the period's equal parts each element starts, and how far behind its begin."""
-    from_first = mesh.start - mesh.start[0]
+def folded(
+    position: Float[Array, " position"], part: float, parts: int
+) -> tuple[Float[Array, " position"], Float[Array, " position"]]:
+    """In which of the period's equal parts each position lies, and how far behind its begin.
+
+    Positions ascend; the first is where the period begins.
+    """
+    from_first = position - position[0]
     own = jnp.clip(floor_past_rounding(stop_gradient(from_first) / part), 0, parts - 1)
     return own, jnp.maximum(from_first - own * part, 0)
 

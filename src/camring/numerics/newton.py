@@ -13,7 +13,7 @@ def damped_newton(
     improved: Callable[[Stages], Stages],
     extent: Callable[[Stages], Float[Array, ""]],
     stages: Stages,
-    tolerance: float,
+    tolerance: float | Float[Array, ""],
     limit: int,
 ) -> tuple[Stages, Int[Array, ""]]:
     """Stages at which Newton's step is small, and how many steps it took.

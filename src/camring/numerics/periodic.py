@@ -157,6 +157,22 @@ def solve_periodic(
         at_stages = frozen.forcing(mesh, jnp.asarray(STAGES))
         stages, iterations = _newton(frozen, at_stages, mesh, stages, tolerance, limit)
 
+    return settle(equation, breakpoints, period, mesh, stages, iterations)
+
+
+def settle(
+    equation: Equation,
+    breakpoints: Breakpoints,
+    period: float,
+    mesh: Mesh,
+    stages: Float[Array, "3 element"],
+    iterations: Int[Array, ""],
+) -> Orbit:
+    """A solution at hand as a function of the equation: one Newton step from a constant.
+
+    Its derivatives are those of the discrete orbit (implicit function theorem); the
+    mesh is carried along by the breakpoints.
+    """
     mesh = follow_breakpoints(mesh, breakpoints.position, period)
     at_stages = equation.forcing(mesh, jnp.asarray(STAGES))
     node_state, stages = _periodic_step(equation, at_stages, mesh, stop_gradient(stages))

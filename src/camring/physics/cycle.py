@@ -11,14 +11,20 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.geometry.extremes import extreme_radius
+from camring.numerics.coupled import CoupledOrbit
 from camring.numerics.equation import Equation
-from camring.numerics.periodic import Orbit, PeriodicResolution, solve_periodic
+from camring.numerics.periodic import Orbit, PeriodicResolution, settle, solve_periodic
 from camring.numerics.quantity import Q
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES
 from camring.numerics.verdict import Verdict, verdict
 from camring.physics.chamber import Chamber, chamber_alone, chamber_between
 from camring.physics.fluid import AbstractFluid
-from camring.physics.manifold import at_supply, expected_pressure, solve_with_manifold
+from camring.physics.manifold import (
+    at_supply,
+    expected_pressure,
+    settle_with_manifold,
+    solve_with_manifold,
+)
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.pressure import exchange_rate, state_rate
@@ -111,28 +117,71 @@ def simulate(
     pitches = motor.lobes // motor.cam.repeats
     elements = resolution.elements * pitches + motor.promised_elements()
 
-    def orbit_at(held: OperatingPoint) -> Orbit:
+    def orbit_at(held: OperatingPoint, refinements: int) -> Orbit:
         """With both port pressures constant."""
         return solve_periodic(
-            Equation(
-                (motor, fluid, held, reference),
-                _state_rate,
-                chamber_alone,
-                _quasi_steady,
-                _kinks(motor, fluid, held),
-            ),
+            _equation(motor, fluid, held, reference),
             breakpoints,
             motor.cam.period,
-            PeriodicResolution(elements, resolution.refinements),
+            PeriodicResolution(elements, refinements),
         )
 
     if motor.manifold is None:
-        orbit, gallery, seen = orbit_at(point), None, point
-    else:
-        held = expected_pressure(motor, point)
-        orbit = orbit_at(at_supply(point, held))
-        orbit, gallery = solve_with_manifold(motor, fluid, point, reference, orbit, held)
-        seen = at_supply(point, fluid.pressure(gallery.stage_state))
+        return _judged(motor, fluid, point, reference, orbit_at(point, resolution.refinements))
+    held = expected_pressure(motor, point)
+    # The last mesh is laid from the motor with its gallery.
+    alone = orbit_at(at_supply(point, held), resolution.refinements - 1)
+    both = solve_with_manifold(motor, fluid, point, reference, alone, held, breakpoints, elements)
+    return _judged(motor, fluid, point, reference, *both)
+
+
+def neighbour(cycle: Cycle, motor: Motor, fluid: AbstractFluid, point: OperatingPoint) -> Cycle:
+    """The cycle of a motor very near to that of a cycle at hand, by one Newton step from it.
+
+    At the cycle's own motor it is that cycle, with all its derivatives: the way to
+    gradients that do not pay for solving once more.
+    """
+    reference, breakpoints = reference_radius(motor), motor.breakpoints()
+    if cycle.gallery is None:
+        orbit = settle(
+            _equation(motor, fluid, point, reference),
+            breakpoints,
+            motor.cam.period,
+            cycle.orbit.mesh,
+            cycle.orbit.stage_state,
+            cycle.orbit.iterations,
+        )
+        return _judged(motor, fluid, point, reference, orbit)
+    known = CoupledOrbit(cycle.orbit, cycle.gallery)
+    both = settle_with_manifold(motor, fluid, point, reference, known, breakpoints)
+    return _judged(motor, fluid, point, reference, *both)
+
+
+def _equation(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    reference: Q[Float[Array, ""], "m"],
+) -> Equation:
+    """Of a chamber between ports of constant pressure."""
+    return Equation(
+        (motor, fluid, point, reference),
+        _state_rate,
+        chamber_alone,
+        _quasi_steady,
+        _kinks(motor, fluid, point),
+    )
+
+
+def _judged(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    reference: Q[Float[Array, ""], "m"],
+    orbit: Orbit,
+    gallery: Orbit | None = None,
+) -> Cycle:
+    seen = point if gallery is None else at_supply(point, fluid.pressure(gallery.stage_state))
     least_volume = motor.dead_volume + motor.piston.area * (
         extreme_radius(motor.cam, -1) - reference
     )

@@ -15,10 +15,16 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.geometry.extremes import extreme_radius
-from camring.numerics.coupled import CoupledEquation, CoupledOrbit, fold, solve_coupled
+from camring.numerics.coupled import (
+    CoupledEquation,
+    CoupledOrbit,
+    settle_coupled,
+    side_by_side,
+    solve_coupled,
+)
+from camring.numerics.mesh import Breakpoints
 from camring.numerics.periodic import Orbit
 from camring.numerics.quantity import Q
-from camring.numerics.radau import STAGES
 from camring.physics.chamber import Chamber, chamber_alone
 from camring.physics.fluid import AbstractFluid
 from camring.physics.motor import Motor
@@ -61,6 +67,8 @@ def solve_with_manifold(
     reference: Q[Float[Array, ""], "m"],
     uncoupled: Orbit,
     gallery_pressure: Q[Float[Array, ""], "Pa"],
+    breakpoints: Breakpoints,
+    elements: int,
 ) -> CoupledOrbit:
     """Chamber and gallery together.
 
@@ -68,16 +76,59 @@ def solve_with_manifold(
     ----------
     uncoupled
         The chamber's orbit when the gallery stands at `gallery_pressure`: it gives
-        the mesh and the first guess.
+        the first mesh and the first guess.
+    elements
+        Of the mesh that is laid from what they do together.
     """
-    links = motor.distinct_phases
-    mesh = fold(uncoupled.mesh, motor.cam.period, links)
-    first = uncoupled.mesh.start[0]
-    guess = uncoupled.at_position(first + (mesh.at(jnp.asarray(STAGES)) - first) % motor.cam.period)
-    equation = CoupledEquation(
-        (motor, fluid, point, reference), _rate, _draw, _gallery_rate, chamber_alone
+    return solve_coupled(
+        _equation(motor, fluid, point, reference),
+        breakpoints,
+        motor.cam.period,
+        motor.distinct_phases,
+        elements,
+        uncoupled,
+        fluid.state(gallery_pressure),
     )
-    return solve_coupled(equation, mesh, links, guess, fluid.state(gallery_pressure))
+
+
+def settle_with_manifold(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    reference: Q[Float[Array, ""], "m"],
+    known: CoupledOrbit,
+    breakpoints: Breakpoints,
+) -> CoupledOrbit:
+    """Chamber and gallery at hand as a function of the motor; see `numerics.periodic.settle`."""
+    own, shared = known
+    links = motor.distinct_phases
+    return settle_coupled(
+        _equation(motor, fluid, point, reference),
+        breakpoints,
+        motor.cam.period,
+        own.mesh,
+        side_by_side(own.stage_state, shared.stage_state, links),
+        own.iterations,
+    )
+
+
+def _equation(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    reference: Q[Float[Array, ""], "m"],
+) -> CoupledEquation:
+    bends = motor.orifice.bends_at_zero
+    levels = (*fluid.kinks(), *((point.return_pressure,) if bends else ()))
+    return CoupledEquation(
+        (motor, fluid, point, reference),
+        _rate,
+        _draw,
+        _gallery_rate,
+        chamber_alone,
+        tuple(fluid.state(pressure) for pressure in levels),
+        bends,
+    )
 
 
 Parameters = tuple[Motor, AbstractFluid, OperatingPoint, Array]
