@@ -70,6 +70,15 @@ class Constraints:
                 named += [f"{name}_low", f"{name}_high"]
         return tuple(named)
 
+    def results_used(self) -> tuple[str, ...]:
+        """The results that decide whether these limits hold."""
+        limits = {**UPPER_LIMITS, **LOWER_LIMITS, "min_contact_force": "min_contact_force"}
+        used = [result for name, result in limits.items() if getattr(self, name) is not None]
+        for name, ends in BANDS.items():
+            if getattr(self, name) is not None:
+                used += ends
+        return tuple(dict.fromkeys(["min_pressure", "min_volume", *used]))
+
 
 def violations(
     constraints: Constraints, system: System, metrics: tuple[Metrics, ...]

@@ -37,6 +37,17 @@ TERM_NAMES = (
 """The raw terms a study stores, so that weights can change without simulating again."""
 
 
+TERM_RESULTS = (
+    "torque_ripple",
+    "pressure_ripple",
+    "efficiency",
+    "spectral_pressure",
+    "spectral_torque",
+    "jerk_objective",
+)
+"""The results that the terms are made of."""
+
+
 def raw_terms(metrics: Metrics) -> dict[str, Float[Array, ""]]:
     """The unweighted terms of one operating point, keyed by `TERM_NAMES`."""
     values = (

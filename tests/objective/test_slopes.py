@@ -1,0 +1,115 @@
+"""Slopes of objective and constraints are central differences, whatever laws the motor has."""
+
+import dataclasses
+
+import equinox as eqx
+import numpy as np
+import pytest
+from motors import with_manifold
+from second_rung import second_rung_case
+
+from camring.interfaces.compiled import assess, slopes
+from camring.interfaces.config import parse_motor_file
+from camring.interfaces.config.template import template
+from camring.objective.design_space import DesignSpace, Variable
+from camring.objective.objective import Goal, judge
+from camring.objective.slopes import results_used
+from camring.physics.system import System
+
+STEP = 2e-4  # of the unit box
+LEAST_SCALE = 0.1  # constraints are counted in their limits; a slope of nil is judged by this
+apply = eqx.filter_jit(DesignSpace.apply)
+
+
+def values(space, system, goal, point):
+    """Objective, and constraints in their order."""
+    found = assess(apply(space, system, point), goal)
+    assert not np.any(found.faults)
+    limits = [float(found.constraints[name]) for name in goal.constraints.names()]
+    return np.array([float(found.physical_objective), *limits])
+
+
+def exact(space, system, goal, point):
+    found = slopes(space, system, point, apply(space, system, point), goal)
+    rows = [found.objective, *(found.constraints[name] for name in goal.constraints.names())]
+    return np.array(rows)
+
+
+def differences(space, system, goal, point, first_step=STEP):
+    """Central differences freed of their third-order term, and how sure they are."""
+    found = []
+    for step in (first_step, first_step / 2):
+        rise = [
+            (values(space, system, goal, point + way) - values(space, system, goal, point - way))
+            / (2 * step)
+            for way in step * np.eye(space.dimension)
+        ]
+        found.append(np.array(rise).T)
+    wide, narrow = found
+    return (4 * narrow - wide) / 3, np.abs(narrow - wide)
+
+
+def compared(space, system, goal, points):
+    """Slopes against differences of every row, over its largest slope, where both steps agree."""
+    away_from_kinks, worst = [], 0.0
+    for point in points:
+        found = exact(space, system, goal, point)
+        expected, doubt = differences(space, system, goal, point)
+        scale = np.max(np.abs(found), axis=1, keepdims=True) + LEAST_SCALE
+        smooth = doubt < 1e-4 * scale
+        away_from_kinks.append(np.mean(smooth))
+        worst = max(worst, np.max(np.where(smooth, np.abs(found - expected) / scale, 0)))
+    return np.mean(away_from_kinks), worst
+
+
+def test_at_random_designs_of_a_motor_file():
+    motor_file = parse_motor_file(template("sine"))
+    space, system, goal = motor_file.design_space, motor_file.system, motor_file.goal
+    random = np.random.default_rng(4)
+    points = random.uniform(0.1, 0.9, (4, space.dimension))
+    smooth, worst = compared(space, system, goal, points)
+    assert smooth > 0.9
+    assert worst < 1e-6
+
+
+@pytest.mark.slow
+def test_with_air_notches_gaps_and_a_manifold():
+    """Numbers that only the second rung has, and the duty itself, as variables."""
+    case = with_manifold(second_rung_case(0), 0.1, 1.0)
+    system = System(case.motor, case.fluid, (case.point,))
+    paths = (
+        "motor.manifold.volume",
+        "motor.manifold.line_conductance",
+        "motor.valve_plate.notch.area",
+        "motor.valve_plate.notch.angle",
+        "motor.gap.clearance",
+        "motor.valve_plate.shift",
+        "fluid.air_fraction",
+    )
+    variables = tuple(Variable((path,), ((path,),), -0.05, 0.05, relative=True) for path in paths)
+    space = DesignSpace(variables)
+    point = np.full(len(paths), 0.4)
+    found = exact(space, system, Goal(), point)[0]
+    # Steps a hundred times as long: the mesh is laid anew for each, to 1e-7 of the results.
+    expected, doubt = differences(space, system, Goal(), point, first_step=100 * STEP)
+    scale = np.max(np.abs(found))
+    assert np.all(doubt[0] < 1e-5 * scale)
+    np.testing.assert_allclose(found, expected[0], atol=1e-5 * scale)
+
+
+def test_what_the_goal_uses_is_what_it_is_made_of():
+    """Every other result may be anything: the judgement does not change."""
+    motor_file = parse_motor_file(template("sine"))
+    system, goal = motor_file.system, motor_file.goal
+    found = assess(system, goal)
+    used = results_used(goal)
+    spoiled = tuple(
+        dataclasses.replace(
+            each, **{name: each.mean_torque * np.nan for name in vars(each) if name not in used}
+        )
+        for each in found.metrics
+    )
+    again = judge(system, goal, spoiled, found.faults)
+    assert float(again.objective) == pytest.approx(float(found.objective), rel=1e-12)
+    for name, value in found.constraints.items():
+        assert float(again.constraints[name]) == pytest.approx(float(value), rel=1e-12)
