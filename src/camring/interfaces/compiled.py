@@ -9,7 +9,17 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from camring.metrics import summary
+from camring.numerics.quantity import ArrayLike
+from camring.objective.design_space import DesignSpace
 from camring.objective.objective import Assessment, Goal, judge
+from camring.objective.slopes import (
+    Operated,
+    Slopes,
+    directions,
+    judged_slopes,
+    result_slopes,
+    results_used,
+)
 from camring.physics import cycle
 from camring.physics import waveforms as sampling
 from camring.physics.cycle import Cycle
@@ -40,3 +50,27 @@ def assess(system: System, goal: Goal, resolution: Resolution | None = None) -> 
 
 
 evaluate = assess
+
+_directions = eqx.filter_jit(directions)
+_result_slopes = eqx.filter_jit(result_slopes)
+_judged_slopes = eqx.filter_jit(judged_slopes)
+
+
+def slopes(
+    space: DesignSpace, given: System, unit_point: ArrayLike, design: System, goal: Goal
+) -> Slopes:
+    """Derivatives of objective and constraints of a design by its unit coordinates.
+
+    Parameters
+    ----------
+    given, design
+        The system that the space belongs to, and that of the point.
+    """
+    along = _directions(space, given, unit_point)
+    found, names = cycles(design), results_used(goal)
+    metrics = tuple(summarise_compiled(each, goal.harmonics) for each in found)
+    of_results = [
+        _result_slopes(each, Operated(along.motor, along.fluid, point), names, goal.harmonics)
+        for each, point in zip(found, along.operating_points, strict=True)
+    ]
+    return _judged_slopes(design, goal, metrics, along, of_results)

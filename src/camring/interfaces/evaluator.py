@@ -9,13 +9,14 @@ import jax
 import numpy as np
 from jaxtyping import Array, Float
 
-from camring.interfaces.compiled import assess
+from camring.interfaces.compiled import assess, slopes
 from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
 from camring.interfaces.record import Outcome
 from camring.numerics.verdict import Verdict
 from camring.objective.baseline import approximate
 from camring.objective.design_space import DesignSpace, leaf
 from camring.objective.objective import Assessment, Goal
+from camring.objective.slopes import Slopes
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
@@ -45,6 +46,22 @@ class MotorEvaluator:
     ) -> Float[np.ndarray, " points"]:
         """The linear model's guess of the objective at many points."""
         return _model(self.text).approximate(points)
+
+    def slopes(
+        self, point: Point
+    ) -> tuple[Float[np.ndarray, " dimension"], Float[np.ndarray, "constraint dimension"]]:
+        """Gradient of the objective without penalty, and that of each constraint in its order."""
+        return _slopes(self.text, np.asarray(point, dtype=float).tobytes())
+
+
+@lru_cache(maxsize=4096)
+def _slopes(text: str, point: bytes) -> tuple[np.ndarray, np.ndarray]:
+    model, at = _model(text), np.frombuffer(point)
+    found: Slopes = jax.device_get(
+        slopes(model.space, model.system, at, model.system_at(at), model.goal)
+    )
+    of_constraints = [found.constraints[name] for name in model.goal.constraints.names()]
+    return np.asarray(found.objective), np.stack(of_constraints)
 
 
 class _Model:

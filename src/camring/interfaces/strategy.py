@@ -9,6 +9,7 @@ from camring.interfaces.config import MotorFile, missing_design_space
 from camring.interfaces.evaluator import MotorEvaluator
 from camring.objective.theory import theory_designs
 from camring.search.bayesian import Bayesian
+from camring.search.gradient import GradientSearch
 from camring.search.hybrid import Hybrid, Stage
 from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy
@@ -36,10 +37,13 @@ def strategy_for(
     first: Sequence[Float[np.ndarray, " dimension"]],
     budget: int,
 ) -> AbstractStrategy:
-    """Bayesian search, then a simplex about the best."""
+    """Descent by exact slopes; or, if the file asks, Bayesian search and then a simplex."""
     space = motor_file.design_space
     assert space is not None
     settings = motor_file.search
+    given = tuple(tuple(map(float, point)) for point in first)
+    if settings.method == "gradient":
+        return GradientSearch(space.dimension, evaluator.slopes, given)
     refinement = int(settings.refinement * budget)
     return Hybrid(
         (
@@ -47,7 +51,7 @@ def strategy_for(
                 Bayesian(
                     dimension=space.dimension,
                     approximate=evaluator.approximate,
-                    given=tuple(tuple(map(float, point)) for point in first),
+                    given=given,
                     mode="penalised" if settings.mode == "penalised" else "separate",
                     penalty_weight=motor_file.goal.weights.penalty,
                     kappa=settings.kappa,

@@ -78,6 +78,15 @@ class SearchTable(Table):
 
     budget: Key[int, Count("the number of model evaluations", "300", high=1_000_000)] = 300
     seed: Key[int, Count("the number all chance comes from", "0", low=0, high=2**31)] = 0
+    method: Key[
+        str,
+        Word(
+            "how designs are sought: down exact slopes from several starts, or by a model "
+            "learned from the evaluations alone",
+            '"gradient"',
+            words=("gradient", "bayesian"),
+        ),
+    ] = "gradient"
     mode: Key[
         str,
         Word(

@@ -19,6 +19,7 @@ _PHASES = {
     "global": "Bayesian search",
     "local": "Bayesian search",
     "bayesian": "Bayesian search",
+    "descent": "descent",
     "refine": "refinement",
     "refinement": "refinement",
     "nelder": "refinement",

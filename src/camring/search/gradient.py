@@ -1,0 +1,249 @@
+"""Descent from several starts, with exact slopes: sequential quadratic programming.
+
+Constraints stay constraints. Each descent is SciPy's SLSQP (Kraft 1988) on the unit
+box, from a point of the initial design. It keeps no state of its own: at every
+proposal it is run again from its start through the evaluations in the history, up to
+the first point that is not among them, and that is the next one to evaluate. A study
+can therefore be stopped at any trial and goes on with the same bits.
+"""
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from jaxtyping import Float
+from scipy.optimize import minimize
+
+from camring.search.problem import (
+    AbstractStrategy,
+    Evaluation,
+    Memory,
+    Proposal,
+    Stop,
+    best_of,
+)
+from camring.search.sampling import initial_point
+from camring.search.threads import one_linear_algebra_thread
+
+Point: TypeAlias = Float[np.ndarray, " dimension"]
+Slopes: TypeAlias = Callable[
+    [Point], tuple[Float[np.ndarray, " dimension"], Float[np.ndarray, "constraint dimension"]]
+]
+
+INSIDE = 2e-7  # what a descent keeps of every limit: it may end `accuracy` beyond it
+GRID = 2.0**-28  # box widths; nearer points share one evaluation, or vain steps would never end
+SOBOL_STARTS = 8
+ROUNDS = 3  # of one descent: after a round that did not converge it begins anew where it is
+STEPS = 100
+
+
+class _Unknown(Exception):
+    """A descent has come to a point that nobody has evaluated."""
+
+    def __init__(self, point: Point) -> None:
+        self.point = point
+
+
+@dataclass(frozen=True)
+class GradientSearch(AbstractStrategy):
+    """Descends from the best start, from the one farthest from it, and so on in turn.
+
+    Attributes
+    ----------
+    slopes
+        At a point that did not fail: the gradient of the objective, and that of each
+        constraint. Asked more than once for the same point.
+    given
+        Points to evaluate first; eight of Sobol's follow.
+    descents
+        How many at most.
+    agreeing
+        Descents that must have ended at the best objective known for the search to be
+        over, to within `agreement` of it.
+    accuracy
+        Of an objective, relative: a descent whose step gains less has converged.
+    tolerance
+        Violation up to which a constraint counts as satisfied.
+    """
+
+    dimension: int
+    slopes: Slopes
+    given: tuple[tuple[float, ...], ...] = ()
+    descents: int = 8
+    agreeing: int = 3
+    agreement: float = 1e-3
+    accuracy: float = 1e-7
+    tolerance: float = 0.0
+
+    def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
+        """The next point: of the initial design, or of the descent under way."""
+        initial = len(self.given) + SOBOL_STARTS
+        if len(history) < initial:
+            return Proposal(
+                initial_point(len(history), self.dimension, seed, self.given), "initial"
+            )
+        starts: list[int] = list(memory.get("starts", ()))
+        ends: list[int] = list(memory.get("ends", ()))
+        with one_linear_algebra_thread():
+            while True:
+                if len(starts) == len(ends):
+                    if (reason := self._enough(history, ends)) is not None:
+                        return Stop(reason)
+                    start = self._next_start(history, initial, starts, ends)
+                    if start is None:
+                        return Stop(f"All {len(starts)} usable starts have been descended from.")
+                    starts.append(start)
+                reached = self._descended(history, starts[-1])
+                if isinstance(reached, np.ndarray):
+                    kept = {"starts": starts, "ends": ends}
+                    return Proposal(reached, f"descent {len(starts)}", kept)
+                ends.append(reached.trial)
+
+    def _enough(self, history: Sequence[Evaluation], ends: Sequence[int]) -> str | None:
+        """Why no further descent is needed, if so."""
+        best = best_of(history, self.tolerance)
+        if best is None or not ends:
+            return None
+        close = [history[end] for end in ends if history[end].feasible(self.tolerance)]
+        limit = best.objective + self.agreement * abs(best.objective)
+        agreeing = sum(each.objective <= limit for each in close)
+        if agreeing >= self.agreeing:
+            return (
+                f"{agreeing} of {len(ends)} descents from different starts ended at the best "
+                f"design known, to {self.agreement:.0e} of its objective."
+            )
+        if len(ends) >= self.descents:
+            return f"{len(ends)} descents from different starts have ended."
+        return None
+
+    def _next_start(
+        self,
+        history: Sequence[Evaluation],
+        initial: int,
+        starts: Sequence[int],
+        ends: Sequence[int],
+    ) -> int | None:
+        """In turn the best one left, and the one farthest from where descents have been."""
+        left = [each for each in history[:initial] if not each.failed and each.trial not in starts]
+        if not left:
+            return None
+        if len(starts) % 2 == 0:
+            return min(left, key=lambda each: each.rank(self.tolerance)).trial
+        seen = np.array([history[trial].point for trial in (*starts, *ends)])
+
+        def distance(each: Evaluation) -> float:
+            return float(np.min(np.linalg.norm(seen - each.point, axis=1)))
+
+        return max(left, key=distance).trial
+
+    def _descended(self, history: Sequence[Evaluation], start: int) -> Point | Evaluation:
+        """Where a descent wants to look next, or the best that it has found."""
+        known = {_on_grid(each.point).tobytes(): each for each in history}
+        # The objectives of the initial design do not change while a descent goes on.
+        usable = [each for each in history[: len(self.given) + SOBOL_STARTS] if not each.failed]
+        scale = 1 / max(min(abs(each.objective) for each in usable), np.finfo(float).tiny)
+        path = _Path(known, self.slopes, scale, history[start])
+        best = history[start]
+        try:
+            for _ in range(ROUNDS):
+                before, converged = best, self._round(path, best.point)
+                best = min(path.seen, key=lambda each: each.rank(self.tolerance))
+                feasible = best.feasible(self.tolerance)
+                if (converged and feasible) or best is before:
+                    break
+                if not feasible:
+                    self._towards_feasible(path, best.point)
+                    best = min(path.seen, key=lambda each: each.rank(self.tolerance))
+        except _Unknown as unknown:
+            return unknown.point
+        return best
+
+    def _round(self, path: "_Path", start: Point) -> bool:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # that a step was clipped to the box
+            found = minimize(
+                path.objective,
+                start,
+                jac=path.objective_slope,
+                bounds=[(0.0, 1.0)] * self.dimension,
+                constraints={
+                    "type": "ineq",
+                    "fun": lambda point: -path.constraints(point),
+                    "jac": lambda point: -path.constraint_slopes(point),
+                },
+                method="SLSQP",
+                options={"maxiter": STEPS, "ftol": self.accuracy},
+            )
+        return bool(found.success)
+
+    def _towards_feasible(self, path: "_Path", start: Point) -> None:
+        """Fewer and smaller violations, whatever the objective."""
+
+        def excess(point: Point) -> tuple[float, Point]:
+            over = np.maximum(path.constraints(point), 0.0)
+            return float(over @ over) / 2, over @ path.constraint_slopes(point)
+
+        minimize(
+            excess,
+            start,
+            jac=True,
+            bounds=[(0.0, 1.0)] * self.dimension,
+            method="L-BFGS-B",
+            options={"maxiter": STEPS},
+        )
+
+
+class _Path:
+    """What a descent sees of the history, and which evaluations it has passed."""
+
+    def __init__(
+        self,
+        known: Mapping[bytes, Evaluation],
+        slopes: Slopes,
+        scale: float,
+        start: Evaluation,
+    ) -> None:
+        self._known, self._slopes, self._scale = known, slopes, scale
+        self.seen: list[Evaluation] = [start]
+
+    def _at(self, point: Point) -> Evaluation:
+        within = _on_grid(point)
+        found = self._known.get(within.tobytes())
+        if found is None:
+            raise _Unknown(within)
+        if found is not self.seen[-1]:
+            self.seen.append(found)
+        return found
+
+    def objective(self, point: Point) -> float:
+        """Scaled to about one at a good design; a failed one is worse than all before it."""
+        here = self._at(point)
+        if here.failed:
+            sound = [each.objective for each in self.seen if not each.failed]
+            return self._scale * (max(sound) + 10 * abs(max(sound)))
+        return self._scale * here.objective
+
+    def objective_slope(self, point: Point) -> Point:
+        here = self._at(point)
+        if here.failed:
+            return np.zeros_like(point)
+        return self._scale * self._slopes(here.point)[0]
+
+    def constraints(self, point: Point) -> Float[np.ndarray, " constraint"]:
+        here = self._at(point)
+        if here.failed:
+            return np.ones_like(here.constraints)
+        return here.constraints + INSIDE
+
+    def constraint_slopes(self, point: Point) -> Float[np.ndarray, "constraint dimension"]:
+        here = self._at(point)
+        if here.failed:
+            return np.zeros((len(here.constraints), len(point)))
+        return self._slopes(here.point)[1]
+
+
+def _on_grid(point: Point) -> Point:
+    """The nearest point of a fine grid in the box."""
+    return np.round(np.clip(point, 0.0, 1.0) / GRID) * GRID + 0.0  # no negative zero
