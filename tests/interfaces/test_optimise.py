@@ -18,7 +18,7 @@ from camring.interfaces.validation import Validation
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "wheel_motor.toml"
 CAMRING = [sys.executable, "-c", "from camring.interfaces.cli import main; main()"]
-BUDGET = 34  # 24 to begin with, four by surrogates, the rest by the simplex
+BUDGET = 34  # 15 to begin with, the rest down the first slope
 
 
 def start(*arguments):
@@ -53,7 +53,8 @@ def test_the_document_says_what_the_study_holds(finished):
     assert document["best"]["trial"] == study.best.trial
     assert document["best"]["objective"] < document["given"]["objective"]
     assert document["validated"] is True
-    assert set(document["leave_one_out"]["errors"]) == {"plain", "rho = 1", "fitted rho"}
+    assert document["leave_one_out"] is None  # slopes are exact: nothing is learned
+    assert {record.phase for record in study.records} == {"initial", "descent 1"}
     assert "Torque ripple" in said
     assert str(folder / "report.html") in said
     assert "Traceback" not in said
@@ -190,6 +191,19 @@ def test_a_study_without_a_feasible_design_ends_with_exit_code_3(tmp_path):
     assert "max_contact_stress" in found["sentence"]
     assert not (folder / "best.toml").exists()
     assert (folder / "report.html").exists()
+
+
+def test_a_file_may_ask_for_a_search_that_learns(tmp_path):
+    """Three trials beyond the initial design, from a surrogate that the document tells of."""
+    motor = tmp_path / "motor.toml"
+    text = EXAMPLE.read_text().replace("[search]", '[search]\nmethod = "bayesian"\nrefinement = 0')
+    motor.write_text(text)
+    finished = camring.optimise(motor, tmp_path / "study", budget=27, theory=False)
+    study = camring.open_study(tmp_path / "study")
+    assert len(study.records) == 27
+    assert [record.phase for record in study.records[-3:]] != ["initial"] * 3
+    assert set(study.leave_one_out["errors"]) == {"plain", "rho = 1", "fitted rho"}
+    assert finished.best is not None
 
 
 @pytest.mark.skipif(os.cpu_count() == 1, reason="a worker and the coordinator share the core")

@@ -16,7 +16,7 @@ from camring.objective.objective import Goal, judge
 from camring.objective.slopes import results_used
 from camring.physics.system import System
 
-STEP = 2e-4  # of the unit box
+STEP = 2e-3  # of the unit box
 LEAST_SCALE = 0.1  # constraints are counted in their limits; a slope of nil is judged by this
 apply = eqx.filter_jit(DesignSpace.apply)
 
@@ -49,27 +49,20 @@ def differences(space, system, goal, point, first_step=STEP):
     return (4 * narrow - wide) / 3, np.abs(narrow - wide)
 
 
-def compared(space, system, goal, points):
-    """Slopes against differences of every row, over its largest slope, where both steps agree."""
-    away_from_kinks, worst = [], 0.0
-    for point in points:
+def test_at_random_designs_of_a_motor_file():
+    """Extremes are found by parabolas between samples, so their slopes are less exact."""
+    motor_file = parse_motor_file(template("sine"))
+    space, system, goal = motor_file.design_space, motor_file.system, motor_file.goal
+    allowed = np.where(np.arange(1 + len(goal.constraints.names())) == 0, 1e-6, 1e-4)[:, None]
+    random = np.random.default_rng(4)
+    for point in random.uniform(0.1, 0.9, (4, space.dimension)):
         found = exact(space, system, goal, point)
         expected, doubt = differences(space, system, goal, point)
         scale = np.max(np.abs(found), axis=1, keepdims=True) + LEAST_SCALE
-        smooth = doubt < 1e-4 * scale
-        away_from_kinks.append(np.mean(smooth))
-        worst = max(worst, np.max(np.where(smooth, np.abs(found - expected) / scale, 0)))
-    return np.mean(away_from_kinks), worst
-
-
-def test_at_random_designs_of_a_motor_file():
-    motor_file = parse_motor_file(template("sine"))
-    space, system, goal = motor_file.design_space, motor_file.system, motor_file.goal
-    random = np.random.default_rng(4)
-    points = random.uniform(0.1, 0.9, (4, space.dimension))
-    smooth, worst = compared(space, system, goal, points)
-    assert smooth > 0.9
-    assert worst < 1e-6
+        smooth = doubt < 1e-4 * scale  # else a kink lies between, and differences mean nothing
+        assert np.all(smooth[0])
+        assert np.mean(smooth) > 0.9
+        assert np.all(np.where(smooth, np.abs(found - expected), 0) < allowed * scale)
 
 
 @pytest.mark.slow
@@ -90,8 +83,8 @@ def test_with_air_notches_gaps_and_a_manifold():
     space = DesignSpace(variables)
     point = np.full(len(paths), 0.4)
     found = exact(space, system, Goal(), point)[0]
-    # Steps a hundred times as long: the mesh is laid anew for each, to 1e-7 of the results.
-    expected, doubt = differences(space, system, Goal(), point, first_step=100 * STEP)
+    # Steps ten times as long: the mesh is laid anew for each, to 1e-7 of the results.
+    expected, doubt = differences(space, system, Goal(), point, first_step=10 * STEP)
     scale = np.max(np.abs(found))
     assert np.all(doubt[0] < 1e-5 * scale)
     np.testing.assert_allclose(found, expected[0], atol=1e-5 * scale)

@@ -45,10 +45,20 @@ def total_variation(
     """All rises and all falls together, from equidistant samples of each element.
 
     Between two samples with slopes of one sign it is the difference of the values;
-    where the slope turns, it is taken as linear.
+    where the slope turns, it is that to and from the turning point of the cubic
+    through both values and slopes.
     """
-    before, after = slope[:-1], slope[1:]
-    turns = before * after < 0
-    bend = jnp.where(turns, jnp.abs(after - before), 1.0)
-    about_the_turn = spacing * (before**2 + after**2) / (2 * bend)
-    return jnp.sum(jnp.where(turns, about_the_turn, jnp.abs(value[1:] - value[:-1])))
+    start, end = slope[:-1] * spacing, slope[1:] * spacing
+    rise = value[1:] - value[:-1]
+    turns = start * end < 0
+    # The cubic's slope is start + linear t + square t^2; one root lies between 0 and 1.
+    square = 3 * (start + end) - 6 * rise
+    linear = end - start - square
+    root = jnp.sqrt(jnp.where(turns, linear**2 - 4 * square * start, 1.0))
+    half = -(linear + jnp.where(linear < 0, -root, root)) / 2
+    one = start / jnp.where(turns, half, 1.0)
+    within = (one > 0) & (one < 1)
+    other = half / jnp.where(turns & ~within, square, 1.0)
+    turn = jnp.where(within, one, other)
+    there = ((square / 3 * turn + linear / 2) * turn + start) * turn
+    return jnp.sum(jnp.abs(jnp.where(turns, 2 * there - rise, rise)))
