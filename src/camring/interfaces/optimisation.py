@@ -6,6 +6,7 @@ from concurrent.futures import Executor
 from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from pathlib import Path
+from threading import Thread
 from typing import Protocol
 
 import numpy as np
@@ -145,6 +146,9 @@ def _go_on(
         motor_file = parse_motor_file(read_text(study.given_path), study.given_path)
         evaluator = MotorEvaluator(motor_file.text)
         first = [np.array(point) for point in json.loads(facts["first_points"])]
+        if motor_file.search.method == "gradient" and len(kept) < budget:
+            # Compiling the slopes' program takes as long as all else; meanwhile the search begins.
+            Thread(target=evaluator.slopes, args=(first[0],), daemon=True).start()
         task = Search(
             evaluate=evaluator,
             constraints=motor_file.goal.constraints.names(),
