@@ -185,3 +185,10 @@ def test_json_is_never_mixed_with_other_words():
     assert done.stdout == ""
     with pytest.raises(ValueError, match="Expecting value"):
         json.loads(done.stderr)
+
+
+def test_the_command_offers_the_methods_of_the_motor_file():
+    from camring.interfaces.commands.optimise import Method
+    from camring.interfaces.config.goal_tables import METHODS
+
+    assert tuple(Method) == METHODS

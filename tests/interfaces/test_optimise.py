@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
@@ -193,17 +194,27 @@ def test_a_study_without_a_feasible_design_ends_with_exit_code_3(tmp_path):
     assert (folder / "report.html").exists()
 
 
-def test_a_file_may_ask_for_a_search_that_learns(tmp_path):
-    """Three trials beyond the initial design, from a surrogate that the document tells of."""
-    motor = tmp_path / "motor.toml"
-    text = EXAMPLE.read_text().replace("[search]", '[search]\nmethod = "bayesian"\nrefinement = 0')
-    motor.write_text(text)
-    finished = camring.optimise(motor, tmp_path / "study", budget=27, theory=False)
-    study = camring.open_study(tmp_path / "study")
+def test_a_search_that_learns_tells_of_its_surrogates_and_stays_what_it_is(tmp_path):
+    """Three trials beyond the initial design; a study from before there was a choice goes on so."""
+    folder = tmp_path / "study"
+    finished = camring.optimise(EXAMPLE, folder, budget=27, method="bayesian", theory=False)
+    study = camring.open_study(folder)
     assert len(study.records) == 27
-    assert [record.phase for record in study.records[-3:]] != ["initial"] * 3
+    assert "initial" not in {record.phase for record in study.records[-3:]}
     assert set(study.leave_one_out["errors"]) == {"plain", "rho = 1", "fitted rho"}
     assert finished.best is not None
+
+    with sqlite3.connect(folder / "study.sqlite") as old:
+        old.execute("DELETE FROM study WHERE key = 'method'")
+    old.close()
+    camring.resume(folder, budget=28)
+    assert "descent" not in camring.open_study(folder).records[-1].phase
+
+
+def test_an_unknown_method_is_refused(tmp_path):
+    with pytest.raises(camring.InputError, match=r"'slope'.*gradient, bayesian"):
+        camring.optimise(EXAMPLE, tmp_path / "study", method="slope")
+    assert not (tmp_path / "study").exists()
 
 
 @pytest.mark.skipif(os.cpu_count() == 1, reason="a worker and the coordinator share the core")

@@ -14,6 +14,7 @@ import numpy as np
 import camring
 from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
 from camring.interfaces.config.document import decode, read_text
+from camring.interfaces.config.goal_tables import BAYESIAN, GRADIENT, METHODS
 from camring.interfaces.coordinator import Search, search
 from camring.interfaces.errors import InputError
 from camring.interfaces.evaluator import MotorEvaluator
@@ -62,6 +63,7 @@ def optimise(
     *,
     budget: int | None = None,
     seed: int | None = None,
+    method: str | None = None,
     theory: bool = True,
     executor: Executor | None = None,
     watch: Watch = Silent,
@@ -76,6 +78,8 @@ def optimise(
         The folder to make.
     budget, seed
         Model evaluations in all, and where chance comes from; else as in the file.
+    method
+        "gradient" or "bayesian"; else as in the file.
     theory
         Whether the search begins also with what theory recommends.
     executor
@@ -97,6 +101,9 @@ def optimise(
         raise missing_design_space(path)
     budget = motor_file.search.budget if budget is None else budget
     seed = motor_file.search.seed if seed is None else seed
+    method = motor_file.search.method if method is None else method
+    if method not in METHODS:
+        raise InputError("method", f"is {method!r}", f"choose one of {', '.join(METHODS)}")
     with Interruption() as interruption:
         try:
             first = interruption.run(InThisProcess(), _first_points, motor_file, theory)
@@ -105,6 +112,7 @@ def optimise(
         facts = {
             "seed": str(seed),
             "budget": str(budget),
+            "method": method,
             "theory": str(theory).lower(),
             "first_points": json.dumps(first.tolist()),
             "given_name": path.name,
@@ -146,13 +154,15 @@ def _go_on(
         motor_file = parse_motor_file(read_text(study.given_path), study.given_path)
         evaluator = MotorEvaluator(motor_file.text)
         first = [np.array(point) for point in json.loads(facts["first_points"])]
-        if motor_file.search.method == "gradient" and len(kept) < budget:
+        # A study without this note was begun when there was no other method.
+        method = facts.get("method", BAYESIAN)
+        if method == GRADIENT and len(kept) < budget:
             # Compiling the slopes' program takes as long as all else; meanwhile the search begins.
             Thread(target=evaluator.slopes, args=(first[0],), daemon=True).start()
         task = Search(
             evaluate=evaluator,
             constraints=motor_file.goal.constraints.names(),
-            strategy=strategy_for(motor_file, evaluator, first, budget),
+            strategy=strategy_for(motor_file, method, evaluator, first, budget),
             budget=budget,
             seed=int(facts["seed"]),
         )

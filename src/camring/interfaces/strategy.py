@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from camring.interfaces.config import MotorFile, missing_design_space
+from camring.interfaces.config.goal_tables import GRADIENT
 from camring.interfaces.evaluator import MotorEvaluator
 from camring.objective.theory import theory_designs
 from camring.search.bayesian import Bayesian
@@ -33,16 +34,17 @@ def first_points(motor_file: MotorFile, *, theory: bool) -> Float[np.ndarray, "p
 
 def strategy_for(
     motor_file: MotorFile,
+    method: str,
     evaluator: MotorEvaluator,
     first: Sequence[Float[np.ndarray, " dimension"]],
     budget: int,
 ) -> AbstractStrategy:
-    """Descent by exact slopes; or, if the file asks, Bayesian search and then a simplex."""
+    """Descent by exact slopes, or Bayesian search and then a simplex."""
     space = motor_file.design_space
     assert space is not None
     settings = motor_file.search
     given = tuple(tuple(map(float, point)) for point in first)
-    if settings.method == "gradient":
+    if method == GRADIENT:
         return GradientSearch(space.dimension, evaluator.slopes, given)
     refinement = int(settings.refinement * budget)
     return Hybrid(

@@ -12,13 +12,9 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
-from camring.numerics.quadrature import gauss_legendre
 from camring.numerics.quantity import Q, real
 from camring.numerics.smooth import exponential_mean, logarithmic_mean
 from camring.physics.fluid import AbstractFluid, OilAt, Pressure
-
-ENTHALPY_POINTS = 16
-"""Gauss points in ln P between p0 and pc: 1e-14 of the integral for pc up to 300 bar."""
 
 
 class AeratedFluid(AbstractFluid):
@@ -113,9 +109,7 @@ class AeratedFluid(AbstractFluid):
     def potential(self, pressure: Pressure) -> Float[Array, "*grid"]:
         """`h(P)`, the integral of dP/rho from atmospheric pressure, J/kg.
 
-        The liquid's part and that of air below atmospheric pressure are closed
-        forms, smooth through every value of gain and polytropic index; that
-        of dissolving air is a Gauss quadrature in the logarithm of pressure.
+        A closed form, smooth through every value of gain and polytropic index.
         """
         # notation: p0 atmospheric pressure; u = ln(P/p0)
         p0, gain = self.atmospheric_pressure, self.modulus_gain
@@ -128,11 +122,16 @@ class AeratedFluid(AbstractFluid):
         u = jnp.log(jnp.minimum(held, p0) / p0)
         below = p0 * u * exponential_mean(power * u)
 
-        points, weights = gauss_legendre(ENTHALPY_POINTS)
+        # Between p0 and pc the free share is a cubic in q = P/p0.
         top = jnp.log(jnp.clip(held, p0, self.dissolution_pressure) / p0)
-        at = top[..., None] * points
-        share = self.undissolved(p0 * jnp.exp(at))[0]
-        dissolving = p0 * top * jnp.sum(weights * jnp.exp(power * at) * share, axis=-1)
+        span = self.dissolution_pressure / p0 - 1
+        square, cube = 3 / span**2, 2 / span**3
+        coefficients = (2 * square + 3 * cube, -square - 3 * cube, cube)
+        dissolving = (1 - square - cube) * top * exponential_mean(power * top)
+        for order, coefficient in enumerate(coefficients, start=1):
+            exponent = power + order
+            dissolving = dissolving + coefficient * jnp.expm1(exponent * top) / exponent
+        dissolving = p0 * dissolving
         return (liquid + self.air_ratio * (below + dissolving)) / self.mass
 
     def compression_power(

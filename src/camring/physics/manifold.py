@@ -16,12 +16,12 @@ from jaxtyping import Array, Float
 
 from camring.geometry.extremes import extreme_radius
 from camring.numerics.coupled import (
-    CoupledEquation,
     CoupledOrbit,
     settle_coupled,
     side_by_side,
     solve_coupled,
 )
+from camring.numerics.coupled_step import CoupledEquation
 from camring.numerics.mesh import Breakpoints
 from camring.numerics.periodic import Orbit
 from camring.numerics.quantity import Q

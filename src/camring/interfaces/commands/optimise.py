@@ -1,9 +1,17 @@
 """`camring optimise`: from a motor file to a better, checked motor."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
+
+
+class Method(StrEnum):
+    """How designs are sought; the words of [search] method, without importing pydantic."""
+
+    GRADIENT = "gradient"
+    BAYESIAN = "bayesian"
 
 
 def optimise(
@@ -16,6 +24,13 @@ def optimise(
     seed: Annotated[
         int | None,
         typer.Option(min=0, help="Where all chance comes from; else that of the file, or 0."),
+    ] = None,
+    method: Annotated[
+        Method | None,
+        typer.Option(
+            help="Down exact slopes, or by a model learned from evaluations alone; "
+            "else that of the file, or gradient."
+        ),
     ] = None,
     theory: Annotated[
         bool,
@@ -38,5 +53,13 @@ def optimise(
     from camring.interfaces.optimisation import optimise
     from camring.interfaces.progress import SearchProgress
 
-    finished = optimise(motor, out, budget=budget, seed=seed, theory=theory, watch=SearchProgress)
+    finished = optimise(
+        motor,
+        out,
+        budget=budget,
+        seed=seed,
+        method=method and method.value,
+        theory=theory,
+        watch=SearchProgress,
+    )
     raise typer.Exit(show(finished, as_json=json))

@@ -73,6 +73,9 @@ class ConstraintsTable(Table):
     ] = None
 
 
+GRADIENT, BAYESIAN = METHODS = ("gradient", "bayesian")
+
+
 class SearchTable(Table):
     """[search]"""
 
@@ -84,20 +87,23 @@ class SearchTable(Table):
             "how designs are sought: down exact slopes from several starts, or by a model "
             "learned from the evaluations alone",
             '"gradient"',
-            words=("gradient", "bayesian"),
+            words=METHODS,
         ),
-    ] = "gradient"
+    ] = GRADIENT
     mode: Key[
         str,
         Word(
-            "how constraints are learned: one surrogate for each, or a penalty in a single one",
+            "how the bayesian search learns limits: one surrogate for each, or a penalty in one",
             '"separate"',
             words=("separate", "penalised"),
         ),
     ] = "separate"
-    kappa: Key[float, Number("the standard deviations that exploring hopes for", "2", high=20)] = (
-        2.0
-    )
+    kappa: Key[
+        float, Number("the standard deviations that the bayesian search hopes for", "2", high=20)
+    ] = 2.0
     refinement: Key[
-        float, Number("the share of the budget for the simplex at the end", "0.2", high=1.0)
+        float,
+        Number(
+            "the share of the bayesian search's budget for the simplex at its end", "0.2", high=1.0
+        ),
     ] = 0.2

@@ -22,10 +22,12 @@ from camring.interfaces.config.table import FULL_TURN, Table, pressure_entry
 from camring.physics.oils import OILS
 
 MOST_POINTS = 50  # operating points in one file
+LARGEST_PART = 2.0  # m; a bare 30 that should have been "30 mm" is told
+LARGEST_RADIUS = 10.0  # m, of a ring
 
 
 def _length(meaning: str, example: str, leaf: str, low: float = 1e-6) -> Number:
-    return Number(meaning, example, unit="m", low=low, high=100.0, leaves=(leaf,))
+    return Number(meaning, example, unit="m", low=low, high=LARGEST_PART, leaves=(leaf,))
 
 
 def _modulus(leaf: str) -> Number:
@@ -52,7 +54,7 @@ class CamTable(Table):
             '"minimum", "mean" or "90 mm"',
             unit="m",
             low=1e-4,
-            high=100.0,
+            high=LARGEST_RADIUS,
             words=("minimum", "mean"),
             leaves=("motor.given_reference_radius",),
         ),
@@ -62,8 +64,8 @@ class CamTable(Table):
     poisson_ratio: Key[float, _poisson("motor.ring_material.poisson_ratio")]
 
 
-CONTROL_RADIUS = Number("a control radius", '"90 mm"', unit="m", low=1e-4, high=100.0)
-COORDINATE = Number("a coordinate", '"90 mm"', unit="m", low=-100.0, high=100.0)
+CONTROL_RADIUS = Number("a control radius", '"90 mm"', unit="m", low=1e-4, high=LARGEST_RADIUS)
+COORDINATE = Number("a coordinate", '"90 mm"', unit="m", low=-LARGEST_RADIUS, high=LARGEST_RADIUS)
 
 
 class RadialCamTable(CamTable):

@@ -141,7 +141,8 @@ amplitude = "40 %"
 mirror = true                                 # stays symmetric about its dead centres
 
 [search]
-budget = 300                                  # model evaluations
+budget = 300                                  # model evaluations, at most
+# method = "bayesian"                         # learns from evaluations alone; no slopes
 seed = 0
 """
 

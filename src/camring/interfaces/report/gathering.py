@@ -25,7 +25,7 @@ from camring.interfaces.study_folder import StudyFolder
 __all__ = ["gather", "gather_comparison", "gather_single"]
 
 # Facts of the study that are for people; the others are for the program.
-_SETTINGS = ("seed", "budget")
+_SETTINGS = ("method", "seed", "budget")
 
 
 def gather(folder: str | Path) -> ReportData:
@@ -198,6 +198,10 @@ def _settings(facts: Mapping[str, str], records: Sequence[Record]) -> dict[str, 
     settings = {name.capitalize(): facts[name] for name in _SETTINGS if name in facts}
     if "seed" in facts and "budget" in facts:
         options = f"--seed {facts['seed']} --budget {facts['budget']}"
+        if "method" in facts:
+            options += f" --method {facts['method']}"
+        if facts.get("theory") == "false":
+            options += " --no-theory"
         name = facts.get("given_name", "MOTOR.toml")
         settings["To repeat"] = f"camring optimise {name} --out FOLDER {options}"
     seconds = sum(record.seconds for record in records)
