@@ -112,7 +112,7 @@ class GradientSearch(AbstractStrategy):
         if agreeing >= self.agreeing:
             return (
                 f"{agreeing} of {len(ends)} descents from different starts ended at the best "
-                f"design known, to {self.agreement:.0e} of its objective."
+                f"design known, to within {100 * self.agreement:g} % of its objective."
             )
         if len(ends) >= self.descents:
             return f"{len(ends)} descents from different starts have ended."
