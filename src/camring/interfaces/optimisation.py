@@ -6,7 +6,6 @@ from concurrent.futures import Executor
 from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from pathlib import Path
-from threading import Thread
 from typing import Protocol
 
 import numpy as np
@@ -14,7 +13,7 @@ import numpy as np
 import camring
 from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
 from camring.interfaces.config.document import decode, read_text
-from camring.interfaces.config.goal_tables import BAYESIAN, GRADIENT, METHODS
+from camring.interfaces.config.goal_tables import BAYESIAN, METHODS
 from camring.interfaces.coordinator import Search, search
 from camring.interfaces.errors import InputError
 from camring.interfaces.evaluator import MotorEvaluator
@@ -156,9 +155,6 @@ def _go_on(
         first = [np.array(point) for point in json.loads(facts["first_points"])]
         # A study without this note was begun when there was no other method.
         method = facts.get("method", BAYESIAN)
-        if method == GRADIENT and len(kept) < budget:
-            # Compiling the slopes' program takes as long as all else; meanwhile the search begins.
-            Thread(target=evaluator.slopes, args=(first[0],), daemon=True).start()
         task = Search(
             evaluate=evaluator,
             constraints=motor_file.goal.constraints.names(),
