@@ -5,10 +5,13 @@ its result, it is the same program for every operating point, command and study
 of motors with the same counts.
 """
 
+from dataclasses import dataclass
+
 import equinox as eqx
 import jax.numpy as jnp
 
 from camring.metrics import summary
+from camring.metrics.summary import Metrics
 from camring.numerics.quantity import ArrayLike
 from camring.objective.design_space import DesignSpace
 from camring.objective.objective import Assessment, Goal, judge
@@ -42,11 +45,30 @@ def cycles(system: System, resolution: Resolution | None = None) -> tuple[Cycle,
     )
 
 
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A design with its cycles and their results, one of each for each operating point."""
+
+    system: System
+    cycles: tuple[Cycle, ...]
+    metrics: tuple[Metrics, ...]
+
+
+def solve(system: System, goal: Goal, resolution: Resolution | None = None) -> Solved:
+    """Every operating point simulated and summarised."""
+    found = cycles(system, resolution)
+    return Solved(system, found, tuple(summarise_compiled(each, goal.harmonics) for each in found))
+
+
+def judge_solved(solved: Solved, goal: Goal) -> Assessment:
+    """What a goal says of a design at hand."""
+    faults = jnp.stack([each.verdict.code for each in solved.cycles])
+    return _judge(solved.system, goal, solved.metrics, faults)
+
+
 def assess(system: System, goal: Goal, resolution: Resolution | None = None) -> Assessment:
     """`camring.objective.objective.evaluate` from the shared programs; same numbers."""
-    found = cycles(system, resolution)
-    metrics = tuple(summarise_compiled(each, goal.harmonics) for each in found)
-    return _judge(system, goal, metrics, jnp.stack([each.verdict.code for each in found]))
+    return judge_solved(solve(system, goal, resolution), goal)
 
 
 evaluate = assess
@@ -57,20 +79,21 @@ _judged_slopes = eqx.filter_jit(judged_slopes)
 
 
 def slopes(
-    space: DesignSpace, given: System, unit_point: ArrayLike, design: System, goal: Goal
+    space: DesignSpace, given: System, unit_point: ArrayLike, design: Solved, goal: Goal
 ) -> Slopes:
     """Derivatives of objective and constraints of a design by its unit coordinates.
 
     Parameters
     ----------
-    given, design
-        The system that the space belongs to, and that of the point.
+    given
+        The system that the space belongs to.
+    design
+        What was solved at the point; nothing is solved again.
     """
     along = _directions(space, given, unit_point)
-    found, names = cycles(design), results_used(goal)
-    metrics = tuple(summarise_compiled(each, goal.harmonics) for each in found)
+    names = results_used(goal)
     of_results = [
         _result_slopes(each, Operated(along.motor, along.fluid, point), names, goal.harmonics)
-        for each, point in zip(found, along.operating_points, strict=True)
+        for each, point in zip(design.cycles, along.operating_points, strict=True)
     ]
-    return _judged_slopes(design, goal, metrics, along, of_results)
+    return _judged_slopes(design.system, goal, design.metrics, along, of_results)

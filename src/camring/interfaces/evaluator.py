@@ -9,7 +9,7 @@ import jax
 import numpy as np
 from jaxtyping import Array, Float
 
-from camring.interfaces.compiled import assess, slopes
+from camring.interfaces.compiled import Solved, assess, judge_solved, slopes, solve
 from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
 from camring.interfaces.record import Outcome
 from camring.numerics.verdict import Verdict
@@ -32,13 +32,11 @@ class MotorEvaluator:
 
     def __call__(self, point: Point) -> Outcome:
         """What the simulation says about one design."""
-        model = _model(self.text)
-        system = model.system_at(point)
-        assessment = assess(system, model.goal)
+        model, solved = _model(self.text), _solved(self.text, point.tobytes())
         return outcome_of(
-            assessment,
+            judge_solved(solved, model.goal),
             approximation=float(model.approximate(point[None])[0]),
-            design=_values(model.space, system),
+            design=_values(model.space, solved.system),
         )
 
     def approximate(
@@ -54,11 +52,17 @@ class MotorEvaluator:
         return _slopes(self.text, np.asarray(point, dtype=float).tobytes())
 
 
+@lru_cache(maxsize=4)  # a search asks for slopes where it has just been
+def _solved(text: str, point: bytes) -> Solved:
+    model = _model(text)
+    return solve(model.system_at(np.frombuffer(point)), model.goal)
+
+
 @lru_cache(maxsize=4096)
 def _slopes(text: str, point: bytes) -> tuple[np.ndarray, np.ndarray]:
     model, at = _model(text), np.frombuffer(point)
     found: Slopes = jax.device_get(
-        slopes(model.space, model.system, at, model.system_at(at), model.goal)
+        slopes(model.space, model.system, at, _solved(text, point), model.goal)
     )
     of_constraints = [found.constraints[name] for name in model.goal.constraints.names()]
     return np.asarray(found.objective), np.stack(of_constraints)
