@@ -77,10 +77,14 @@ class GradientSearch(AbstractStrategy):
     accuracy: float = 1e-7
     tolerance: float = 0.0
 
+    @property
+    def initial(self) -> int:
+        """Evaluations of the initial design, from which descents start."""
+        return len(self.given) + SOBOL_STARTS
+
     def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
         """The next point: of the initial design, or of the descent under way."""
-        initial = len(self.given) + SOBOL_STARTS
-        if len(history) < initial:
+        if len(history) < self.initial:
             return Proposal(
                 initial_point(len(history), self.dimension, seed, self.given), "initial"
             )
@@ -91,7 +95,7 @@ class GradientSearch(AbstractStrategy):
                 if len(starts) == len(ends):
                     if (reason := self._enough(history, ends)) is not None:
                         return Stop(reason)
-                    start = self._next_start(history, initial, starts, ends)
+                    start = self._next_start(history, starts, ends)
                     if start is None:
                         return Stop(f"All {len(starts)} usable starts have been descended from.")
                     starts.append(start)
@@ -121,16 +125,17 @@ class GradientSearch(AbstractStrategy):
     def _next_start(
         self,
         history: Sequence[Evaluation],
-        initial: int,
         starts: Sequence[int],
         ends: Sequence[int],
     ) -> int | None:
         """In turn the best one left, and the one farthest from where descents have been."""
-        left = [each for each in history[:initial] if not each.failed and each.trial not in starts]
-        if not left:
+        design = history[: self.initial]
+        left = [each for each in design if not each.failed and each.trial not in starts]
+        best = best_of(left, self.tolerance)
+        if best is None:
             return None
         if len(starts) % 2 == 0:
-            return min(left, key=lambda each: each.rank(self.tolerance)).trial
+            return best.trial
         seen = np.array([history[trial].point for trial in (*starts, *ends)])
 
         def distance(each: Evaluation) -> float:
@@ -142,23 +147,21 @@ class GradientSearch(AbstractStrategy):
         """Where a descent wants to look next, or the best that it has found."""
         known = {_on_grid(each.point).tobytes(): each for each in history}
         # The objectives of the initial design do not change while a descent goes on.
-        usable = [each for each in history[: len(self.given) + SOBOL_STARTS] if not each.failed]
+        usable = [each for each in history[: self.initial] if not each.failed]
         scale = 1 / max(min(abs(each.objective) for each in usable), np.finfo(float).tiny)
         path = _Path(known, self.slopes, scale, history[start])
-        best = history[start]
         try:
             for _ in range(ROUNDS):
-                before, converged = best, self._round(path, best.point)
-                best = min(path.seen, key=lambda each: each.rank(self.tolerance))
-                feasible = best.feasible(self.tolerance)
-                if (converged and feasible) or best is before:
+                before = path.best(self.tolerance)
+                converged = self._round(path, before.point)
+                best = path.best(self.tolerance)
+                if best is before or (converged and best.feasible(self.tolerance)):
                     break
-                if not feasible:
+                if not best.feasible(self.tolerance):
                     self._towards_feasible(path, best.point)
-                    best = min(path.seen, key=lambda each: each.rank(self.tolerance))
         except _Unknown as unknown:
             return unknown.point
-        return best
+        return path.best(self.tolerance)
 
     def _round(self, path: "_Path", start: Point) -> bool:
         with warnings.catch_warnings():
@@ -207,6 +210,12 @@ class _Path:
     ) -> None:
         self._known, self._slopes, self._scale = known, slopes, scale
         self.seen: list[Evaluation] = [start]
+
+    def best(self, tolerance: float) -> Evaluation:
+        """Of all that the descent has passed; its start, at least, did not fail."""
+        found = best_of(self.seen, tolerance)
+        assert found is not None
+        return found
 
     def _at(self, point: Point) -> Evaluation:
         within = _on_grid(point)
