@@ -27,7 +27,7 @@ from camring.physics.manifold import (
 )
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
-from camring.physics.pressure import exchange_rate, state_rate
+from camring.physics.pressure import exchange_rate, kinks, state_rate
 from camring.physics.resolution import Resolution
 
 CONVERGED_RESIDUAL = 1e-7
@@ -75,12 +75,6 @@ def _quasi_steady(parameters: tuple, chamber: Chamber) -> Array:
     middle = (point.supply_pressure + point.return_pressure) / 2
     total = supply * point.supply_pressure + back * point.return_pressure + closed * middle
     return fluid.state(total / (supply + back + closed))
-
-
-def _kinks(motor: Motor, fluid: AbstractFluid, point: OperatingPoint) -> tuple[Array, ...]:
-    """States at which a law bends: the fluid's own, and the ports' where the orifice does."""
-    ports = (point.supply_pressure, point.return_pressure) if motor.orifice.bends_at_zero else ()
-    return tuple(fluid.state(pressure) for pressure in (*fluid.kinks(), *ports))
 
 
 def _exchange(
@@ -169,7 +163,7 @@ def _equation(
         _state_rate,
         chamber_alone,
         _quasi_steady,
-        _kinks(motor, fluid, point),
+        kinks(motor, fluid, point.supply_pressure, point.return_pressure),
     )
 
 

@@ -29,7 +29,7 @@ from camring.physics.chamber import Chamber, chamber_alone
 from camring.physics.fluid import AbstractFluid
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
-from camring.physics.pressure import port_flows, state_rate
+from camring.physics.pressure import kinks, port_flows, state_rate
 
 
 def at_supply(point: OperatingPoint, pressure: Q[Float[Array, "*grid"], "Pa"]) -> OperatingPoint:
@@ -118,16 +118,14 @@ def _equation(
     point: OperatingPoint,
     reference: Q[Float[Array, ""], "m"],
 ) -> CoupledEquation:
-    bends = motor.orifice.bends_at_zero
-    levels = (*fluid.kinks(), *((point.return_pressure,) if bends else ()))
     return CoupledEquation(
         (motor, fluid, point, reference),
         _rate,
         _draw,
         _gallery_rate,
         chamber_alone,
-        tuple(fluid.state(pressure) for pressure in levels),
-        bends,
+        kinks(motor, fluid, point.return_pressure),
+        motor.orifice.bends_at_zero,
     )
 
 

@@ -110,3 +110,11 @@ def exchange_rate(
     _, slope = jax.jvp(net, (pressure,), (jnp.ones_like(pressure),))
     capacity = fluid.at(pressure).content_slope * chamber.volume
     return -slope / (capacity * point.shaft_speed)
+
+
+def kinks(
+    motor: Motor, fluid: AbstractFluid, *port_pressures: Q[Float[Array, ""], "Pa"]
+) -> tuple[Float[Array, ""], ...]:
+    """States at which a law bends: the fluid's own, and those of ports where the orifice does."""
+    ports = port_pressures if motor.orifice.bends_at_zero else ()
+    return tuple(fluid.state(pressure) for pressure in (*fluid.kinks(), *ports))
