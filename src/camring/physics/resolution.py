@@ -8,9 +8,9 @@ class Resolution:
     """Mesh and spectrum sizes.
 
     `elements` counts collocation elements between the breakpoints of a lobe
-    pitch, beside the one that each breakpoint brings. The measured errors of
-    the three named resolutions stand in docs/notes/verification.md; `simulate`
-    reports an estimate with every result.
+    pitch, beside the one that each breakpoint brings. The default's measured
+    errors stand in docs/notes/verification.md; `simulate` reports an estimate with
+    every result.
     """
 
     elements: int = 320
