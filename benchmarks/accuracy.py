@@ -25,15 +25,15 @@ ROOT = Path(__file__).parents[1]
 RESULTS = Path(__file__).with_name("results")
 sys.path.insert(0, str(ROOT / "tests"))
 
-from both_roads import relative_errors, run_all, scales, single  # noqa: E402
-from motors import AWKWARD, STRUCTURES, Case, awkward_case, sound_case, with_manifold  # noqa: E402
-from reference_files import DATA  # noqa: E402
-from second_rung import TROUBLES, hard_case, second_rung_case  # noqa: E402
+from both_roads import relative_errors, run_all, scales, single
+from motors import AWKWARD, STRUCTURES, Case, awkward_case, sound_case, with_manifold
+from reference_files import DATA
+from second_rung import TROUBLES, hard_case, second_rung_case
 
-from camring.interfaces.config import read_motor_file  # noqa: E402
-from camring.metrics.error_estimate import error_estimate  # noqa: E402
-from camring.metrics.independent import OrbitError, independent_results  # noqa: E402
-from camring.physics.resolution import Resolution  # noqa: E402
+from camring.interfaces.config import read_motor_file
+from camring.metrics.error_estimate import error_estimate
+from camring.metrics.independent import OrbitError, independent_results
+from camring.physics.resolution import Resolution
 
 REFERENCES = ("mid", "wheel_motor", "winch_motor", "mill_motor", "mid_aerated")
 OF_MANIFOLD = ("line_loss", "supply_pressure_swing")

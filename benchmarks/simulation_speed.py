@@ -23,6 +23,7 @@ import numpy as np
 import camring
 from camring.metrics.independent import independent_results
 from camring.metrics.summary import summarise
+from camring.objective.slopes import Operated, directions, result_slopes, results_used
 from camring.physics.aerated_fluid import AeratedFluid
 from camring.physics.cycle import simulate
 from camring.physics.fluid import AbstractFluid
@@ -105,6 +106,14 @@ def main() -> None:
             rows[f"each of {designs}, {name} resolution, {rung}"] = (
                 seconds(lambda batch=batch, oil=oil: batch(many, oil), repeats=3) / designs
             )
+
+    space, goal, names = motor_file.design_space, motor_file.goal, results_used(motor_file.goal)
+    along = directions(space, system, space.locate(system))
+    several = Operated(along.motor, along.fluid, along.operating_points[0])
+    cycle = eqx.filter_jit(simulate)(motor, fluid, point)
+    of_results = eqx.filter_jit(result_slopes)
+    name = f"slopes of what the goal uses by {space.dimension} variables, from a cycle at hand"
+    rows[name] = seconds(lambda: of_results(cycle, several, names, goal.harmonics))
 
     print(f"{os.cpu_count()} cores; wheel motor at {float(point.shaft_speed) * 9.5493:.0f} rpm")
     print("| what | time | times faster than SciPy |\n|---|---|---|")
