@@ -7,6 +7,7 @@ margins are negative, and the shares of the cycle above zero, where that happens
 
 import equinox as eqx
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 from camring.numerics.extremum import EXTREMUM_FRACTIONS
@@ -25,24 +26,25 @@ class Cavitation(eqx.Module):
 
 def cavitation(
     cycle: Cycle,
-    pressure: Q[Float[Array, "5 element"], "Pa"],
-    least_pressure: Q[Float[Array, ""], "Pa"],
+    pressure: Q[Float[Array, "point element *lane"], "Pa"],
+    least_pressure: Q[Float[Array, "*lane"], "Pa"],
+    fractions: Float[np.ndarray, " point"] = EXTREMUM_FRACTIONS,
 ) -> Cavitation:
-    """Cavitation of a cycle whose pressure is sampled at `EXTREMUM_FRACTIONS`.
+    """Cavitation of a cycle whose pressure is sampled at fractions of every element.
 
     Between two samples the pressure counts as straight, so the shares move
     smoothly with a design: good to 1e-5 of the period, where the pressure
     crosses a limit in the middle of an element.
     """
     fluid, width = cycle.fluid, cycle.orbit.mesh.width
-    length = jnp.diff(EXTREMUM_FRACTIONS)[:, None] * width
+    length = np.diff(fractions).reshape(-1, *(1 for _ in width.shape)) * width
 
     def share_below(limit: Q[Float[Array, ""], "Pa"]) -> Q[Float[Array, ""], "1"]:
         one, other = pressure[:-1], pressure[1:]
         low, rise = jnp.minimum(one, other), jnp.abs(other - one)
         part = jnp.clip((limit - low) / jnp.where(rise > 0, rise, 1), 0, 1)
         below = jnp.where(rise > 0, part, limit > low)
-        return jnp.sum(below * length) / jnp.sum(width)
+        return jnp.sum(below * length, axis=(0, 1)) / jnp.sum(width, axis=0)
 
     return Cavitation(
         air_release_margin=least_pressure - fluid.atmospheric_pressure,

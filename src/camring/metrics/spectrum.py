@@ -27,11 +27,12 @@ class QuadratureSamples(NamedTuple):
     piston: PistonState
     pressure_slope: Q[Float[Array, "point element"], "Pa/rad"]
     """Slope of the solution itself, which meets the equation to solver accuracy only."""
-    weights: Float[Array, "point element"]
+    weights: Float[Array, "point element *lane"]
 
-    def mean(self, values: Float[Array, "point element"]) -> Float[Array, ""]:
+    def mean(self, values: Float[Array, "point element *lane"]) -> Float[Array, "*lane"]:
         """Mean over a period."""
-        return jnp.sum(self.weights * values) / jnp.sum(self.weights)
+        total = jnp.sum(self.weights * values, axis=(0, 1))
+        return total / jnp.sum(self.weights, axis=(0, 1))
 
 
 class Spectrum(NamedTuple):

@@ -195,7 +195,7 @@ def _close(
 
 def own_extent(stages: Array) -> Float[Array, ""]:
     """Range of a copy's orbit: the shared state moves less, but in the same unit."""
-    return extent(stages[:, :-1])
+    return extent(stages[:, :-1].reshape(3, -1))
 
 
 def coupled_residual(

@@ -68,13 +68,18 @@ def folded(
     return own, jnp.maximum(from_first - own * part, 0)
 
 
+def graded_fractions(count: int) -> np.ndarray:
+    """Nodes of `count` elements of the unit interval, finer towards both its ends."""
+    steepness = 2.2
+    line = np.linspace(-1, 1, count + 1)
+    return (np.tanh(steepness * line) / np.tanh(steepness) + 1) / 2
+
+
 def graded_mesh(
     breakpoints: Float[Array, " breakpoint"], period: float, per_segment: int = 4
 ) -> Mesh:
     """The same few elements between any two breakpoints, finer towards both."""
-    steepness = 2.2
-    line = np.linspace(-1, 1, per_segment + 1)
-    fractions = (np.tanh(steepness * line) / np.tanh(steepness) + 1) / 2
+    fractions = graded_fractions(per_segment)
     begin, end = segment_ends(breakpoints, period)
     span = (end - begin)[:, None]
     first = np.tile(np.arange(per_segment) == 0, len(breakpoints))
@@ -156,12 +161,13 @@ def fourth_derivative_density(
     third = 6 * third_coefficient / width**3 / extent
     # What a thin element's third derivative owes to rounding must not count in a wide neighbour.
     noise = 6 * ROUNDING / width**3
-    jump = jnp.abs(third - jnp.roll(third, 1)) - noise - jnp.roll(noise, 1)
-    change = jnp.maximum(jump, 0) / ((width + jnp.roll(width, 1)) / 2)
+    jump = jnp.abs(third - jnp.roll(third, 1, axis=0)) - noise - jnp.roll(noise, 1, axis=0)
+    change = jnp.maximum(jump, 0) / ((width + jnp.roll(width, 1, axis=0)) / 2)
     change = jnp.where(mesh.is_first, 0.0, change)
-    density = jnp.sqrt(jnp.sqrt(jnp.maximum(change, jnp.roll(change, -1))))
+    density = jnp.sqrt(jnp.sqrt(jnp.maximum(change, jnp.roll(change, -1, axis=0))))
     behind, ahead = (
-        jnp.roll(density, k) * jnp.minimum(1, jnp.roll(width, k) / width) for k in (1, -1)
+        jnp.roll(density, k, axis=0) * jnp.minimum(1, jnp.roll(width, k, axis=0) / width)
+        for k in (1, -1)
     )
     spread = jnp.maximum(behind, ahead) / 2
     return _level(jnp.minimum(jnp.maximum(density, spread), 1e7 / period), mesh, period)
@@ -171,7 +177,7 @@ def _level(
     density: Float[Array, " element"], mesh: Mesh, period: float
 ) -> Float[Array, " element"]:
     """Half the elements by density, half evenly, so that none grows wide."""
-    return density + jnp.sum(density * mesh.width) / period + 1 / period
+    return density + jnp.sum(density * mesh.width, axis=0) / period + 1 / period
 
 
 def _interpolate_sorted(

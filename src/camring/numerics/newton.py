@@ -11,7 +11,7 @@ Stages = Float[Array, "*stages"]
 
 def damped_newton(
     improved: Callable[[Stages], Stages],
-    extent: Callable[[Stages], Float[Array, ""]],
+    extent: Callable[[Stages], Float[Array, "*lane"]],
     stages: Stages,
     tolerance: float | Float[Array, ""],
     limit: int,
@@ -27,7 +27,8 @@ def damped_newton(
     improved
         One full Newton step.
     extent
-        What a step is measured against: `tolerance` is a share of it.
+        What a step is measured against: `tolerance` is a share of it. One number, or one
+        for each lane where problems lie side by side along the last axis; the worst decides.
     limit
         Steps at most; so many are a sign that it is lost.
     """
@@ -42,7 +43,7 @@ def damped_newton(
         step = updated - current
         leaps = (step * before < 0) & (2 * jnp.abs(step) > jnp.abs(before))
         share = jnp.where(leaps, share / 2, jnp.minimum(2 * share, 1))
-        size = jnp.max(jnp.abs(step)) / extent(updated)
+        size = jnp.max(jnp.max(jnp.abs(step), axis=(0, 1)) / extent(updated))
         return current + share * step, step, share, size, count + 1
 
     start = (stages, jnp.zeros_like(stages), jnp.ones_like(stages))

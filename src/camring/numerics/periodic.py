@@ -56,6 +56,9 @@ from camring.numerics.radau import (
     solve_stages,
 )
 
+FORGOTTEN = 1e-100
+"""A share of a disturbance that counts as none."""
+
 
 class PeriodicResolution(NamedTuple):
     """How finely an orbit is looked at; all static."""
@@ -145,7 +148,7 @@ def solve_periodic(
     )
 
     for tolerance in tolerances[1:]:
-        node_state, stages = _periodic_step(frozen, at_stages, mesh, stages)
+        node_state, stages = newton_step(frozen, at_stages, mesh, stages)
         powers = element_powers(node_state, stages)
         density = fourth_derivative_density(mesh, powers[3], extent(stages), period)
         layer = _layer_width(frozen, mesh, node_state, period, fixed)
@@ -175,14 +178,15 @@ def settle(
     """
     mesh = follow_breakpoints(mesh, breakpoints.position, period)
     at_stages = equation.forcing(mesh, jnp.asarray(STAGES))
-    node_state, stages = _periodic_step(equation, at_stages, mesh, stop_gradient(stages))
-    residual = _collocation_residual(equation, at_stages, mesh, node_state, stages)
+    node_state, stages = newton_step(equation, at_stages, mesh, stop_gradient(stages))
+    rate = list(equation.rate(at_stages, stages))
+    residual = collocation_residual(rate, mesh, node_state, stages)
     return Orbit(mesh, node_state, stages, residual, iterations)
 
 
-def extent(states: Array) -> Float[Array, ""]:
+def extent(states: Float[Array, "point element *lane"]) -> Float[Array, "*lane"]:
     """Range of the states, which errors are measured against; never nil."""
-    return jnp.max(states) - jnp.min(states) + 1e-300
+    return jnp.max(states, axis=(0, 1)) - jnp.min(states, axis=(0, 1)) + 1e-300
 
 
 def _layer_width(
@@ -200,7 +204,7 @@ def _layer_width(
     return 1 / jnp.maximum(jnp.abs(slope), 1 / period)
 
 
-def _periodic_step(
+def newton_step(
     equation: Equation, at_stages: Forcing, mesh: Mesh, stages: Float[Array, "3 element"]
 ) -> tuple[Float[Array, " element"], Float[Array, "3 element"]]:
     """One Newton step of all collocation equations and periodicity together.
@@ -222,6 +226,9 @@ def _periodic_step(
     def compose(so_far: tuple, element: tuple) -> tuple:
         product, total = so_far
         product = element[0] * product
+        # Far below rounding against the offsets; as a denormal number it would cost a hundred
+        # cycles each time it is touched.
+        product = jnp.where(jnp.abs(product) < FORGOTTEN, 0.0, product)
         total = element[0] * total + element[1]
         return (product, total), so_far
 
@@ -244,7 +251,7 @@ def _newton(
     limit: int,
 ) -> tuple[Float[Array, "3 element"], Int[Array, ""]]:
     def improved(current: Float[Array, "3 element"]) -> Float[Array, "3 element"]:
-        return _periodic_step(equation, at_stages, mesh, current)[1]
+        return newton_step(equation, at_stages, mesh, current)[1]
 
     return damped_newton(improved, extent, stages, tolerance, limit)
 
@@ -257,18 +264,16 @@ def _interpolate(
     return horner(jnp.moveaxis(powers.T[element], -1, 0), fraction)
 
 
-def _collocation_residual(
-    equation: Equation,
-    at_stages: Forcing,
+def collocation_residual(
+    rate: list[Float[Array, " element"]],
     mesh: Mesh,
     node_state: Float[Array, " element"],
     stages: Float[Array, "3 element"],
 ) -> Float[Array, ""]:
     """Largest violation of stage equations or continuity, over the orbit's range."""
-    rate = list(equation.rate(at_stages, stages))
     errors = [
         jnp.abs(node_state + mesh.width * combine(row, rate) - stages[i])
         for i, row in enumerate(STAGE_INTEGRALS)
     ]
-    closure = jnp.abs(jnp.roll(stages[2], 1) - node_state)
-    return jnp.max(jnp.stack([*errors, closure])) / extent(stages)
+    closure = jnp.abs(jnp.roll(stages[2], 1, axis=0) - node_state)
+    return jnp.max(jnp.stack([*errors, closure]), axis=(0, 1)) / extent(stages)

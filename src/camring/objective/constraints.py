@@ -91,7 +91,8 @@ def violations(
         )
     ]
     return {
-        name: jnp.max(jnp.stack([found[name] for found in each])) for name in constraints.names()
+        name: jnp.max(jnp.stack([found[name] for found in each]), axis=0)
+        for name in constraints.names()
     }
 
 

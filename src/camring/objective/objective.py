@@ -54,7 +54,8 @@ def judge(
     each = [raw_terms(results) for results in metrics]
     terms = {name: jnp.stack([found[name] for found in each]) for name in TERM_NAMES}
     weights = jnp.stack([point.weight for point in system.operating_points])
-    physical = jnp.sum(weights * weighted_sum(terms, goal.weights)) / jnp.sum(weights)
+    weighted = jnp.sum(weights * weighted_sum(terms, goal.weights), axis=0)
+    physical = weighted / jnp.sum(weights, axis=0)
     found = violations(goal.constraints, system, metrics)
     return Assessment(
         objective=physical + penalty(found, goal.weights.penalty),

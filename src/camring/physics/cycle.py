@@ -62,12 +62,12 @@ def reference_radius(motor: Motor) -> Q[Float[Array, ""], "m"]:
     return extreme_radius(motor.cam, -1)
 
 
-def _state_rate(parameters: tuple, chamber: Chamber, state: Array) -> Array:
+def rate_in_state(parameters: tuple, chamber: Chamber, state: Array) -> Array:
     motor, fluid, point, _ = parameters
     return state_rate(motor, fluid, point, chamber, state)
 
 
-def _quasi_steady(parameters: tuple, chamber: Chamber) -> Array:
+def quasi_steady(parameters: tuple, chamber: Chamber) -> Array:
     """State of a chamber that stands still: a mean of the ports' pressures by their openings."""
     motor, fluid, point, _ = parameters
     supply, back = chamber.supply_area, chamber.return_area
@@ -160,9 +160,9 @@ def _equation(
     """Of a chamber between ports of constant pressure."""
     return Equation(
         (motor, fluid, point, reference),
-        _state_rate,
+        rate_in_state,
         chamber_alone,
-        _quasi_steady,
+        quasi_steady,
         kinks(motor, fluid, point.supply_pressure, point.return_pressure),
     )
 

@@ -43,7 +43,7 @@ def sample_elements(cycle: Cycle, fraction: Float[Array, " point"]) -> PistonSta
     )
     angle = mesh.at(fraction)
     before = None if cycle.gallery is None else cycle.gallery.at(fraction)
-    return _state(cycle, angle, radius, chamber, cycle.orbit.at(fraction), before)
+    return piston_state(cycle, angle, radius, chamber, cycle.orbit.at(fraction), before)
 
 
 def sample_angles(cycle: Cycle, angle: Q[Float[Array, "*grid"], "rad"]) -> PistonState:
@@ -66,12 +66,18 @@ def sample_located(
     chamber = chamber_at(cycle.motor, cycle.reference_radius, angle, radius)
     before = None if cycle.gallery is None else cycle.gallery.at_offset(element, offset)
     state = cycle.orbit.at_offset(element, offset)
-    return _state(cycle, angle, radius, chamber, state, before)
+    return piston_state(cycle, angle, radius, chamber, state, before)
 
 
-def _state(
-    cycle: Cycle, angle: Array, radius: Jet, chamber: Chamber, state: Array, gallery: Array | None
+def piston_state(
+    cycle: Cycle,
+    angle: Q[Float[Array, "*grid"], "rad"],
+    radius: Jet,
+    chamber: Chamber,
+    state: Float[Array, "*grid"],
+    gallery: Float[Array, "*grid"] | None = None,
 ) -> PistonState:
+    """What follows from cam, chamber and the states of the oil at some angles."""
     motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
     pressure = fluid.pressure(state)
     before = point.supply_pressure if gallery is None else fluid.pressure(gallery)

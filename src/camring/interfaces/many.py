@@ -1,0 +1,164 @@
+"""Thousands of designs of one motor file, judged side by side.
+
+Designs go through in blocks of a fixed size, so that nothing is compiled anew for
+another number of them and memory stays the same for a million; a thread for each
+processor core takes one block after another. Motors that cannot be simulated in lanes
+(`physics.lane_cycle.fits`) go the ordinary way, slower, with the same results.
+"""
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import equinox as eqx
+import jax
+import numpy as np
+from jaxtyping import Float
+
+from camring.objective.design_space import DesignSpace
+from camring.objective.lanes import (
+    designs_in_lanes,
+    judge_designs,
+    solve_designs,
+    summarise_designs,
+)
+from camring.objective.objective import Assessment, Goal, evaluate
+from camring.physics.lane_cycle import LanesLook, fits
+from camring.physics.resolution import Resolution
+from camring.physics.system import System
+
+LANES = 64
+"""Designs side by side: their numbers then fit a core's own cache."""
+
+BLOCKS = 4
+"""Blocks of lanes in one call of a program."""
+
+CHUNK = LANES * BLOCKS
+
+Points = Float[np.ndarray, "design coordinate"]
+
+# Eight numbers at once where the processor can; a pool of threads inside a program would
+# only stand in the way of ours.
+_OPTIONS: dict[str, Any] = {
+    "compiler_options": {
+        "xla_cpu_prefer_vector_width": 512,
+        "xla_cpu_multi_thread_eigen": False,
+    }
+}
+
+
+def _program(function: Callable) -> Callable:
+    return eqx.filter_jit(function, **_OPTIONS)
+
+
+def evaluate_many(
+    space: DesignSpace,
+    system: System,
+    goal: Goal,
+    points: Points,
+    look: LanesLook | None = None,
+    threads: int | None = None,
+) -> Assessment:
+    """Objective, terms, constraints and every result at many points of the unit box.
+
+    Parameters
+    ----------
+    system
+        The one that the space belongs to.
+    look
+        How finely; `LanesLook()` for final results, `LanesLook.search()` (the default)
+        for objective terms to about 1e-4.
+    threads
+        One for each processor core that this process may use, unless given.
+
+    Returns
+    -------
+    NumPy arrays with a place for each design; terms and faults (operating point, design).
+    A design whose `faults` are not zero has numbers that mean nothing.
+    """
+    points = np.asarray(points, dtype=float)
+    look = look or LanesLook.search()
+    judge_chunk = _in_lanes if fits(system.motor) else _one_by_one
+    judged = _judged_by(judge_chunk, space, system, goal, look)
+    starts = range(0, len(points), CHUNK)
+    with ThreadPoolExecutor(threads or _cores()) as pool:
+        parts = list(pool.map(lambda start: judged(points[start : start + CHUNK]), starts))
+    return jax.tree.map(lambda *leaves: np.concatenate(leaves, axis=-1), *parts)
+
+
+def _judged_by(
+    judge_chunk: Callable[..., Assessment],
+    space: DesignSpace,
+    system: System,
+    goal: Goal,
+    look: LanesLook,
+) -> Callable[[Points], Assessment]:
+    def judged(some: Points) -> Assessment:
+        missing = CHUNK - len(some)
+        padded = np.concatenate([some, np.broadcast_to(some[:1], (missing, some.shape[1]))])
+        found = jax.device_get(judge_chunk(space, system, goal, padded, look))
+        return jax.tree.map(lambda leaf: leaf[..., : len(some)], found)
+
+    return judged
+
+
+def _in_lanes(
+    space: DesignSpace, system: System, goal: Goal, points: Points, look: LanesLook
+) -> Assessment:
+    designs = _designs(space, system, points.reshape(BLOCKS, LANES, -1))
+    cycles = _solve(designs, look)
+    metrics = _summarise(cycles, goal, look)
+    return _judge(designs, cycles, metrics, goal)
+
+
+def _blocks(function: Callable) -> Callable:
+    """One block after another, in one program."""
+    return lambda blocks: jax.lax.map(function, blocks)
+
+
+@_program
+def _designs(space: DesignSpace, system: System, points: Points) -> System:
+    return _blocks(lambda block: designs_in_lanes(space, system, block))(points)
+
+
+@_program
+def _solve(designs: System, look: LanesLook) -> tuple:
+    return _blocks(lambda block: solve_designs(block, look))(designs)
+
+
+@_program
+def _summarise(cycles: tuple, goal: Goal, look: LanesLook) -> tuple:
+    return _blocks(lambda block: summarise_designs(block, goal, look))(cycles)
+
+
+@_program
+def _judge(designs: System, cycles: tuple, metrics: tuple, goal: Goal) -> Assessment:
+    def judged(designs: System, cycles: tuple, metrics: tuple) -> Assessment:
+        return judge_designs(designs, cycles, metrics, goal)
+
+    found = jax.vmap(judged)(designs, cycles, metrics)
+    return jax.tree.map(_side_by_side, found)
+
+
+def _side_by_side(blocks: jax.Array) -> jax.Array:
+    """(block, ..., lane) to (..., design)."""
+    moved = jax.numpy.moveaxis(blocks, 0, -2)
+    return moved.reshape(*moved.shape[:-2], -1)
+
+
+@eqx.filter_jit
+def _one_by_one(
+    space: DesignSpace, system: System, goal: Goal, points: Points, look: LanesLook
+) -> Assessment:
+    resolution = Resolution.coarse() if look == LanesLook.search() else Resolution()
+    judged = jax.vmap(lambda point: evaluate(space.apply(system, point), goal, resolution))
+    found = jax.lax.map(judged, points.reshape(-1, LANES // 8, points.shape[-1]))
+    flat = jax.tree.map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), found)
+    return jax.tree.map(lambda leaf: jax.numpy.moveaxis(leaf, 0, -1), flat)
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

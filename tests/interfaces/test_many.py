@@ -1,0 +1,50 @@
+"""A thousand designs at once are judged as each by itself."""
+
+from pathlib import Path
+
+import jax
+import numpy as np
+import pytest
+
+from camring.interfaces import many
+from camring.interfaces.compiled import assess
+from camring.interfaces.config import read_motor_file
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(scope="module")
+def motor_file():
+    return read_motor_file(EXAMPLES / "mill_motor.toml")
+
+
+@pytest.fixture(scope="module")
+def judged(motor_file):
+    space = motor_file.design_space
+    points = np.random.default_rng(3).uniform(0.4, 0.6, size=(many.CHUNK + 3, space.dimension))
+    return points, many.evaluate_many(space, motor_file.system, motor_file.goal, points)
+
+
+def test_there_is_one_answer_for_each_design(judged):
+    points, found = judged
+    assert {leaf.shape[-1] for leaf in jax.tree.leaves(found)} == {len(points)}
+
+
+def test_each_is_what_it_is_alone(motor_file, judged):
+    points, found = judged
+    for place in (0, len(points) - 1):
+        alone = assess(
+            motor_file.design_space.apply(motor_file.system, points[place]), motor_file.goal
+        )
+        assert found.physical_objective[place] == pytest.approx(
+            float(alone.physical_objective), rel=1e-3
+        )
+        for name, value in alone.constraints.items():
+            assert found.constraints[name][place] == pytest.approx(float(value), abs=2e-2), name
+
+
+def test_nothing_depends_on_how_many_are_asked(motor_file, judged):
+    points, found = judged
+    space = motor_file.design_space
+    few = many.evaluate_many(space, motor_file.system, motor_file.goal, points[-3:], threads=1)
+    np.testing.assert_allclose(few.objective, found.objective[-3:], rtol=1e-6)

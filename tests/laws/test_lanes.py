@@ -1,0 +1,145 @@
+"""Many motors side by side are the same motors, one by one."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from both_roads import relative_errors, run_all, single
+from motors import STRUCTURES, awkward_case, sound_case, stacked
+
+from camring.geometry.lane_cam import radius_around, radius_at, round_the_cam
+from camring.metrics.lane_summary import summarise_lanes
+from camring.numerics.lanes import ascending_rows, interpolate, locate
+from camring.physics.lane_cycle import LanesLook, neighbour_lanes, simulate_lanes
+
+LANES = 8
+LOOSE = {"flow_ripple": 3e-3, "torque_ripple_peak_to_peak": 3e-4}
+"""Sampled at fixed places, so that a spike between two of them is seen late."""
+
+_simulate = eqx.filter_jit(simulate_lanes)
+_summarise = eqx.filter_jit(summarise_lanes)
+
+
+def in_lanes(cases):
+    return jax.tree.map(lambda leaf: jnp.moveaxis(leaf, 0, -1), stacked(cases))
+
+
+@pytest.fixture(scope="module")
+def sound():
+    cases = [sound_case(seed, STRUCTURES[0]) for seed in range(LANES)]
+    return cases, _simulate(*in_lanes(cases), LanesLook())
+
+
+def record(metrics, lane):
+    return {name: float(leaf[lane]) for name, leaf in vars(metrics).items()}
+
+
+def worst_errors(cases, metrics) -> dict[str, float]:
+    _, alone = run_all(cases)
+    errors = [
+        relative_errors(record(metrics, k), {n: float(v) for n, v in vars(one).items()}, case)
+        for k, case in enumerate(cases)
+        for one in [single(alone, k)]
+    ]
+    return {name: max(each[name] for each in errors) for name in errors[0]}
+
+
+def test_every_result_is_that_of_the_motor_alone(sound):
+    cases, found = sound
+    assert not np.any(np.asarray(found.cycle.verdict.code))
+    errors = worst_errors(cases, _summarise(found))
+    extremes = ("min_pressure", "max_pressure", "min_contact_force", "max_contact_stress")
+    for name, error in errors.items():
+        asked = LOOSE.get(name, 5e-5 if name in extremes else 2e-5)
+        assert error < asked, (name, error)
+
+
+def test_terms_of_the_objective_hold_at_search_resolution():
+    cases = [sound_case(seed, STRUCTURES[0]) for seed in range(LANES)]
+    look = LanesLook.search()
+    found = _summarise(_simulate(*in_lanes(cases), look), 600, look.oversampling)
+    errors = worst_errors(cases, found)
+    for name in ("torque_ripple", "pressure_ripple", "efficiency", "jerk_objective"):
+        assert errors[name] < 1e-4, (name, errors[name])
+
+
+def test_the_power_balance_closes_in_every_lane(sound):
+    _, found = sound
+    assert np.max(np.abs(_summarise(found).power_residual)) < 1e-9
+
+
+def test_an_unsound_lane_leaves_its_neighbours_alone(sound):
+    cases, alone = sound
+    spoiled = list(cases)
+    spoiled[3] = awkward_case(0, "racing").changed(lambda c: c.motor.dead_volume, -1e-3)
+    found = _simulate(*in_lanes(spoiled), LanesLook())
+    assert int(found.cycle.verdict.code[3]) != 0
+    others = np.array([0, 1, 2, 4, 5, 6, 7])
+    assert not np.any(np.asarray(found.cycle.verdict.code)[others])
+    # Newton goes on until the slowest lane is done, so the others are settled better still.
+    np.testing.assert_allclose(
+        _summarise(found).mean_torque[others], _summarise(alone).mean_torque[others], rtol=1e-8
+    )
+
+
+def test_slopes_are_central_differences(sound):
+    cases, found = sound
+    motor, fluid, point = in_lanes(cases)
+    width = motor.valve_plate.supply.width
+
+    def changed(width):
+        return eqx.tree_at(lambda m: m.valve_plate.supply.width, motor, width)
+
+    @eqx.filter_jit
+    def near(width):
+        return summarise_lanes(
+            neighbour_lanes(found.cycle, changed(width), fluid, point, LanesLook())
+        ).mean_torque
+
+    def torque(width):
+        return _summarise(_simulate(changed(width), fluid, point, LanesLook())).mean_torque
+
+    _, slope = jax.jvp(near, (width,), (jnp.ones_like(width),))
+    step = 2e-4
+    difference = (
+        8 * (torque(width + step) - torque(width - step))
+        - (torque(width + 2 * step) - torque(width - 2 * step))
+    ) / (12 * step)
+    # Every simulation lays its mesh anew, which moves torque by 1e-7 of itself or so.
+    np.testing.assert_allclose(slope, difference, rtol=1e-3)
+
+
+def test_cams_in_lanes_are_the_cams(sound):
+    cases, _ = sound
+    cam = in_lanes(cases)[0].cam
+    angle = np.random.default_rng(5).uniform(-9, 9, size=(50, LANES))
+    at, around = radius_at(cam, angle), radius_around(cam, np.arange(64) / 64)
+    for lane, case in enumerate(cases):
+        alone = case.motor.cam
+        for mine, theirs in zip(at, alone.pitch_radius(angle[:, lane]), strict=True):
+            np.testing.assert_allclose(mine[:, lane], theirs, rtol=1e-9, atol=1e-9)
+        fixed = alone.pitch_radius(alone.period * np.arange(64) / 64)
+        np.testing.assert_allclose(around.value[:, lane], fixed.value, rtol=1e-12)
+        np.testing.assert_allclose(around.first[:, lane], fixed.first, atol=1e-12)
+    round_ = round_the_cam(cam)
+    lowest, highest = round_.extremes()
+    # One rise a lobe: what is climbed is the stroke.
+    np.testing.assert_allclose(round_.rises(), highest - lowest, rtol=1e-6)
+
+
+def test_rows_are_found_and_sorted_lane_by_lane():
+    rng = np.random.default_rng(7)
+    rows, value = np.sort(rng.normal(size=(37, 5)), axis=0), rng.normal(size=(90, 5))
+    for lane in range(5):
+        expected = np.searchsorted(rows[:, lane], value[:, lane], side="right") - 1
+        found = np.asarray(locate(jnp.asarray(rows), jnp.asarray(value)))[:, lane]
+        np.testing.assert_array_equal(found, np.maximum(expected, 0))
+        line = interpolate(jnp.asarray(value), jnp.asarray(rows), jnp.asarray(rows) ** 2)
+        np.testing.assert_allclose(
+            line[:, lane], np.interp(value[:, lane], rows[:, lane], rows[:, lane] ** 2), rtol=1e-12
+        )
+    shuffled = rng.permuted(np.round(rows, 1), axis=0)
+    ordered, carried = ascending_rows(jnp.asarray(shuffled), jnp.asarray(2 * shuffled))
+    np.testing.assert_array_equal(ordered, np.sort(shuffled, axis=0))
+    np.testing.assert_array_equal(carried, 2 * ordered)
