@@ -26,8 +26,8 @@ WIDE = 15  # times from the lowest to the highest: then levels stand in steps of
 
 # Where the result falls below zero: what is said, the colour, the hatching.
 BOUNDARIES = {
-    "min_contact_force": ("roller lifts off", "#8c1d40", "////"),
-    "vapour_margin": ("oil cavitates", "#000000", "...."),
+    "min_contact_force": ("roller lifts off", "#8c1d40", "///"),
+    "vapour_margin": ("oil cavitates", "#000000", "..."),
 }
 LIMIT_DASHES = ("--", "-.", ":", (0, (6, 2, 1, 2, 1, 2)))
 
@@ -55,6 +55,7 @@ def result_map(grid: Grid, name: str, axes: Axes | None = None) -> Figure:
     """
     if len(grid.axes) != 2:
         raise InputError("a map", "needs two numbers that vary", "draw one with sweep_curves")
+    own = axes is None
     figure, axes = drawing_board(axes, 6.3, 4.6)
     across, up = grid.axes
     shown, values = quantity(name), grid.shown(name)
@@ -86,9 +87,12 @@ def result_map(grid: Grid, name: str, axes: Axes | None = None) -> Figure:
         for text in said or ():
             text.set_path_effects([withStroke(linewidth=2.2, foreground="white")])
     handles = _boundaries(axes, grid, name)
-    _finish(axes, grid, handles)
+    axes.grid(False)
     axes.set(xlabel=across.label, ylabel=up.label)
-    axes.set_title(f"{label}\n{grid.title}")
+    axes.set_title(grid.title)
+    if handles:
+        below = dict(loc="outside lower center", ncols=2)
+        (figure if own else axes).legend(handles=handles, fontsize=8, **(below if own else {}))
     return figure
 
 
@@ -193,7 +197,7 @@ def _boundaries(axes: Axes, grid: Grid, name: str) -> list[Any]:
             continue
         dash, shown = next(dashes, "--"), quantity(result)
         axes.contour(across, up, values, [limit], colors=LIMIT, linestyles=[dash], linewidths=1.4)
-        words = f"{shown.label[:1].lower()}{shown.label[1:]} {shown.written(limit)} {shown.unit}"
+        words = f"limit: {shown.label.lower()} {limit * shown.factor:.4g} {shown.unit}"
         handles.append(Line2D([], [], color=LIMIT, linestyle=dash, label=words))
     if not np.all(np.isfinite(grid.results[name])):
         x, y = np.meshgrid(across, up, indexing="ij")
@@ -203,19 +207,6 @@ def _boundaries(axes: Axes, grid: Grid, name: str) -> list[Any]:
         )
         handles += marks
     return handles
-
-
-def _finish(axes: Axes, grid: Grid, handles: list[Any]) -> None:
-    axes.grid(False)
-    axes.set_facecolor("white")
-    if handles:
-        axes.legend(
-            handles=handles,
-            loc="upper center",
-            bbox_to_anchor=(0.5, -0.14),
-            ncols=min(len(handles), 3),
-            fontsize=8,
-        )
 
 
 def _shade(panel: Axes, axis: Axis, grid: Grid) -> None:
@@ -231,5 +222,5 @@ def _shade(panel: Axes, axis: Axis, grid: Grid) -> None:
             edgecolor=colour,
             hatch=hatch,
             linewidth=0,
-            alpha=0.5,
+            alpha=0.4,
         )
