@@ -69,18 +69,14 @@ def results_of_many(
     for start in range(0, count, CHUNK):
         chosen = np.minimum(np.arange(start, start + CHUNK), count - 1)
         chunk = jax.tree.map(lambda leaf, chosen=chosen: jnp.asarray(leaf)[chosen], everything)
-        parts.append(jax.device_get(_results(*chunk, resolution, harmonics)))
+        parts.append(jax.device_get(_results(chunk, resolution, harmonics)))
     joined = jax.tree.map(lambda *leaves: np.concatenate(leaves)[:count], *parts)
     return Many(*joined)
 
 
 @eqx.filter_jit
 def _results(
-    motors: Motor,
-    fluids: AbstractFluid,
-    points: OperatingPoint,
-    resolution: Resolution,
-    harmonics: int,
+    chunk: tuple[Motor, AbstractFluid, OperatingPoint], resolution: Resolution, harmonics: int
 ) -> tuple[Metrics, Int[Array, " many"]]:
     def one(
         motor: Motor, fluid: AbstractFluid, point: OperatingPoint
@@ -88,7 +84,7 @@ def _results(
         cycle = simulate(motor, fluid, point, resolution)
         return summarise(cycle, harmonics), cycle.verdict.code
 
-    return jax.vmap(one)(motors, fluids, points)
+    return jax.vmap(one)(*chunk)
 
 
 def repeated(tree: Tree, count: int) -> Tree:

@@ -8,7 +8,6 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from camring.interfaces.report.quantities import QUANTITIES, Quantity
-from camring.interfaces.units import from_si
 from camring.metrics.summary import Metrics
 from camring.numerics.verdict import EXPLANATIONS, Verdict
 
@@ -47,7 +46,7 @@ class Axis:
 
     def text(self, place: int) -> str:
         """One value with its unit."""
-        return f"{self.shown[place]:.6g} {self.unit}".rstrip()
+        return f"{self.shown[place]:.4g} {self.unit}".rstrip()
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,16 +156,10 @@ def plain_unit(unit: str) -> str:
     return unit.translate(_ASCII) or "1"
 
 
-def in_unit(si: Float[np.ndarray, " place"], unit: str) -> Float[np.ndarray, " place"]:
-    """SI values in a unit."""
-    return np.array([from_si(float(value), unit) for value in si]) if unit else np.asarray(si)
-
-
 __all__ = [
     "LIMITS",
     "Axis",
     "Grid",
-    "in_unit",
     "plain_unit",
     "quantity",
     "result_names",

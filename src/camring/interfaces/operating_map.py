@@ -72,9 +72,9 @@ def operating_map(
     asked = OperatingPoint(
         shaft_speed=grid_speed,
         supply_pressure=grid_pressure,
-        return_pressure=np.full(count, back),
-        case_pressure=np.full(count, float(point.case_pressure)),
-        weight=np.ones(count),
+        return_pressure=repeated(point.return_pressure, count),
+        case_pressure=repeated(point.case_pressure, count),
+        weight=repeated(point.weight, count),
     )
     found = results_of_many(
         repeated(system.motor, count),
@@ -110,7 +110,10 @@ def described(file: MotorFile, number: int, without: set[str]) -> str:
     held = [
         (SPEED, f"{float(point.shaft_speed) / RPM:.4g} rpm"),
         (SUPPLY, f"supply {float(point.supply_pressure) / BAR:.4g} bar"),
-        ("operating_points.return_pressure", f"return {float(point.return_pressure) / BAR:.4g} bar"),
+        (
+            "operating_points.return_pressure",
+            f"return {float(point.return_pressure) / BAR:.4g} bar",
+        ),
         ("operating_points.case_pressure", f"case {float(point.case_pressure) / BAR:.4g} bar"),
     ]
     own = {key.replace(f"[{number - 1}]", "") for key in without}

@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from itertools import product
 from typing import Any
 
-
 from camring.interfaces.batch import results_of_many, stacked
 from camring.interfaces.config import MotorFile
 from camring.interfaces.config.build import build_system
@@ -177,10 +176,7 @@ def _system(
 def _put(document: dict[str, Any], key: str, steps: list[str | int], value: Any) -> None:
     here: Any = document
     for step in steps[:-1]:
-        if isinstance(step, str):
-            here = here.setdefault(step, {})
-        else:
-            here = _item(here, step, key)
+        here = here.setdefault(step, {}) if isinstance(step, str) else _item(here, step, key)
     last = steps[-1]
     if isinstance(last, int):
         _item(here, last, key)

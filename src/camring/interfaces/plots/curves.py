@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from camring.interfaces.errors import InputError
 from camring.interfaces.plots.style import drawing_board, line, sheet, styled
 from camring.interfaces.report.palette import RETURN, SUPPLY
+from camring.numerics.quantity import real
 
 if TYPE_CHECKING:
     from camring.physics.cycle import Cycle
@@ -54,9 +55,11 @@ def waveforms(*cycles: "Cycle", labels: Sequence[str] = ()) -> Figure:
             values = factor * np.asarray(getattr(wave, name))
             panel.plot(_degrees(wave), values, label=named, **line(place, len(cycles)))
         panel.set(ylabel=unit, title=f"{label}, {unit}")
-    for pressure, said, colour in _ports(cycles):
-        panels[0].axhline(pressure / 1e5, color=colour, linewidth=0.9, linestyle=":", label=said)
-    panels[0].legend(fontsize=8, ncols=2)
+    for pressure, port, colour in _ports(cycles):
+        panels[0].axhline(pressure / 1e5, color=colour, linewidth=0.9, linestyle=":", label=port)
+    handles, said = panels[0].get_legend_handles_labels()
+    figure.legend(handles, said, loc="outside upper left", fontsize=8, ncols=2)
+    figure.align_ylabels(panels)
     panels[-1].set_xlabel(ANGLE)
     panels[-1].set_xlim(0, _degrees(waves[0])[-1])
     return figure
@@ -90,8 +93,8 @@ def pressure_volume(
     ):
         volume, pressure = 1e6 * np.asarray(wave.volume), np.asarray(wave.chamber_pressure) / 1e5
         axes.plot(volume, pressure, label=name, **line(place, len(cycles)))
-    for pressure, said, colour in _ports(cycles):
-        axes.axhline(pressure / 1e5, color=colour, linewidth=0.9, linestyle=":", label=said)
+    for port, said, colour in _ports(cycles):
+        axes.axhline(port / 1e5, color=colour, linewidth=0.9, linestyle=":", label=said)
     axes.set(xlabel="Chamber volume, cm³", ylabel="Chamber pressure, bar (absolute)")
     _key_above(axes)
     return figure
@@ -148,7 +151,7 @@ def _sampled(cycles: Sequence["Cycle"]) -> "list[Waveforms]":
     if not cycles:
         raise InputError("a figure", "was asked for without a cycle", "give camring.simulate(...)")
     period = max(cycle.motor.cam.period for cycle in cycles)
-    angle = np.linspace(0, period, SAMPLES)
+    angle = real(np.linspace(0, period, SAMPLES))
     return [sample(cycle, angle) for cycle in cycles]
 
 
@@ -167,7 +170,9 @@ def _names(cycles: Sequence["Cycle"], labels: Sequence[str]) -> list[str]:
             f"{float(c.point.supply_pressure) / 1e5:.4g} bar"
             for c in cycles
         ]
-        names = duties if len(set(duties)) == len(duties) else [f"{n + 1}" for n in range(len(names))]
+        names = (
+            duties if len(set(duties)) == len(duties) else [f"{n + 1}" for n in range(len(names))]
+        )
     return names
 
 

@@ -1,5 +1,6 @@
 """Maps over two numbers and curves over one, with the limits of the motor drawn in."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -29,7 +30,7 @@ BOUNDARIES = {
     "min_contact_force": ("roller lifts off", "#8c1d40", "///"),
     "vapour_margin": ("oil cavitates", "#000000", "..."),
 }
-LIMIT_DASHES = ("--", "-.", ":", (0, (6, 2, 1, 2, 1, 2)))
+LIMIT_DASHES: tuple[Any, ...] = ("--", "-.", ":", (0, (6, 2, 1, 2, 1, 2)))
 
 
 @styled
@@ -90,9 +91,10 @@ def result_map(grid: Grid, name: str, axes: Axes | None = None) -> Figure:
     axes.grid(False)
     axes.set(xlabel=across.label, ylabel=up.label)
     axes.set_title(grid.title)
-    if handles:
-        below = dict(loc="outside lower center", ncols=2)
-        (figure if own else axes).legend(handles=handles, fontsize=8, **(below if own else {}))
+    if handles and own:
+        figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8)
+    elif handles:
+        axes.legend(handles=handles, fontsize=8)
     return figure
 
 
@@ -107,7 +109,7 @@ def ripple_map(grid: Grid, axes: Axes | None = None) -> Figure:
 
 
 @styled
-def sweep_curves(grid: Grid, names: tuple[str, ...] | list[str]) -> Figure:
+def sweep_curves(grid: Grid, names: Sequence[str]) -> Figure:
     """Results over one number, one below the other.
 
     Raises
@@ -116,9 +118,7 @@ def sweep_curves(grid: Grid, names: tuple[str, ...] | list[str]) -> Figure:
         For a grid over two numbers.
     """
     if len(grid.axes) != 1:
-        raise InputError(
-            "a curve", "needs one number that varies", "draw two with result_map"
-        )
+        raise InputError("a curve", "needs one number that varies", "draw two with result_map")
     figure = sheet(6.3, 0.9 + 1.75 * len(names))
     panels = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
     axis = grid.axes[0]
@@ -143,6 +143,7 @@ def sweep_curves(grid: Grid, names: tuple[str, ...] | list[str]) -> Figure:
         if not np.any(np.isfinite(grid.shown(name))):
             panel.text(0.5, 0.5, "no value", transform=panel.transAxes, ha="center")
         _shade(panel, axis, grid)
+    figure.align_ylabels(panels)
     panels[-1].set_xlabel(axis.label)
     panels[-1].set_xlim(axis.shown.min(), axis.shown.max())
     handles = [
@@ -156,13 +157,16 @@ def sweep_curves(grid: Grid, names: tuple[str, ...] | list[str]) -> Figure:
     return figure
 
 
-def _levels(finite: Float[np.ndarray, " place"], unit: str, name: str) -> Float[np.ndarray, " level"]:
+def _levels(
+    finite: Float[np.ndarray, " place"], unit: str, name: str
+) -> Float[np.ndarray, " level"]:
     """Round numbers where contours stand: denser near 100 % for efficiencies."""
     low, high = np.percentile(finite, [2, 98])
     if high - low <= 1e-9 * max(abs(low), abs(high)):
         return np.array([])
     if unit == "%" and name.endswith("efficiency"):
-        inside = PERCENTS[(PERCENTS > low) & (PERCENTS < finite.max())]
+        highest = float(finite.max())
+        inside = np.array([level for level in PERCENTS if low < level < highest])
         if len(inside) >= FEWEST_LEVELS:
             return inside
     if low > 0 and high > WIDE * low:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from camring.interfaces.errors import InputError
 from camring.interfaces.plots.style import line, sheet, styled
 from camring.interfaces.report.palette import RETURN, SUPPLY
+from camring.numerics.quantity import real
 
 if TYPE_CHECKING:
     from camring.physics.motor import Motor
@@ -52,16 +53,17 @@ def cam(*motors: "Motor", labels: tuple[str, ...] = ()) -> Figure:
     ring.set(aspect="equal", xlabel="x, mm", ylabel="y, mm")
     ring.set_title("Working surface (thick) and pitch curve (thin)")
     left.legend(loc="outside lower center", fontsize=8)
-    lift.set(ylabel="mm", title="Lift, mm, with the open windows")
+    lift.set(ylabel="mm", title="Lift, mm, and the windows' opening")
     tilt.set(ylabel="deg", title="Pressure angle, deg")
     margin.set(ylabel="–", title="Undercut factor (dimensionless)", xlabel="Cam angle, deg")
     margin.axhline(0, color="#a3262b", linewidth=1.0, linestyle="--")
+    right.align_ylabels([lift, tilt, margin])
     lift.set_xlim(0, 360 / min(motor.cam.repeats for motor in motors))
     return figure
 
 
 def _draw_ring(axes: Axes, motor: "Motor", name: str, look: dict) -> None:
-    angle = np.linspace(0, 2 * pi, AROUND)
+    angle = real(np.linspace(0, 2 * pi, AROUND))
     jet = motor.cam.pitch_radius(angle)
     radius, slope = np.asarray(jet.value), np.asarray(jet.first)
     length, roller = np.hypot(radius, slope), float(motor.roller.radius)
@@ -77,7 +79,7 @@ def _draw_unrolled(panels: tuple[Axes, Axes, Axes], motor: "Motor", look: dict) 
     from camring.geometry.contour import pressure_angle, undercut_factor
     from camring.physics.cycle import reference_radius
 
-    angle = np.linspace(0, motor.cam.period, PERIOD)
+    angle = real(np.linspace(0, motor.cam.period, PERIOD))
     jet = motor.cam.pitch_radius(angle)
     lift = np.asarray(jet.value) - float(reference_radius(motor))
     tilt = np.degrees(np.asarray(pressure_angle(jet)))
@@ -88,7 +90,7 @@ def _draw_unrolled(panels: tuple[Axes, Axes, Axes], motor: "Motor", look: dict) 
 
 def _draw_windows(axes: Axes, motor: "Motor") -> None:
     plate = motor.valve_plate
-    angle = np.linspace(0, motor.cam.period, PERIOD)
+    angle = real(np.linspace(0, motor.cam.period, PERIOD))
     low, high = axes.get_ylim()
     for port, colour, hatch, name in (
         (plate.supply, SUPPLY, "///", "supply"),
@@ -107,7 +109,5 @@ def _draw_windows(axes: Axes, motor: "Motor") -> None:
             linewidth=0.8,
             label=f"{name} window",
         )
-    axes.set_ylim(low - 0.32 * (high - low), high)
-    axes.legend(fontsize=8, ncols=2, loc="upper right")
-
-
+    axes.set_ylim(low - 0.32 * (high - low), high + 0.22 * (high - low))
+    axes.legend(fontsize=8, ncols=2, loc="upper center")
