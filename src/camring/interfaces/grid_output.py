@@ -181,7 +181,7 @@ def _values(grid: Grid, names: Sequence[str]) -> Table:
     for name in names:
         shown = quantity(name)
         table.add_column(f"{shown.label}\n{shown.unit}", justify="right")
-    table.add_column("")
+    table.add_column("", no_wrap=True)
     marks = [
         ("lifts off", grid.results["min_contact_force"] < 0),
         ("cavitates", grid.results["vapour_margin"] < 0),

@@ -199,7 +199,8 @@ def _boundaries(axes: Axes, grid: Grid, name: str) -> list[Any]:
         values = np.ma.masked_invalid(grid.results[result]).T
         if not (np.any(values > limit) and np.any(values < limit)):
             continue
-        dash, shown = next(dashes, "--"), quantity(result)
+        shown = quantity(result)
+        dash: Any = next(dashes, "--")
         axes.contour(across, up, values, [limit], colors=LIMIT, linestyles=[dash], linewidths=1.4)
         words = f"limit: {shown.label.lower()} {limit * shown.factor:.4g} {shown.unit}"
         handles.append(Line2D([], [], color=LIMIT, linestyle=dash, label=words))

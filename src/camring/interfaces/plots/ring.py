@@ -1,7 +1,7 @@
 """The ring as it is ground, and the cam unrolled with the windows that serve it."""
 
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -42,7 +42,8 @@ def cam(*motors: "Motor", labels: tuple[str, ...] = ()) -> Figure:
             "labels", f"has {len(names)} names for {len(motors)} motors", "give one for each"
         )
     figure = sheet(8.2, 5.0)
-    left, right = figure.subfigures(1, 2, width_ratios=[1.05, 1])
+    halves: Any = figure.subfigures(1, 2, width_ratios=[1.05, 1])
+    left, right = halves
     ring = left.subplots()
     lift, tilt, margin = right.subplots(3, 1, sharex=True, height_ratios=[1.3, 1, 1])
     for place, (motor, name) in enumerate(zip(motors, names, strict=True)):

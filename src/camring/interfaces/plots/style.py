@@ -18,7 +18,7 @@ from camring.interfaces.report.palette import INK, QUIET, design_look
 PICTURES = (".png", ".svg", ".pdf")
 _ENOUGH_DOTS = 160  # an inch, of a raster picture
 
-STYLE: dict[str, Any] = {
+STYLE: Any = {
     "font.family": "DejaVu Sans",  # comes with matplotlib
     "font.size": 9.0,
     "axes.titlesize": 9.5,
