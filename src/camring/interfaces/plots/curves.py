@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from camring.interfaces.errors import InputError
+from camring.interfaces.plots.samples import spectra
 from camring.interfaces.plots.style import drawing_board, line, sheet, styled
 from camring.interfaces.report.palette import RETURN, SUPPLY
 from camring.numerics.quantity import real
@@ -117,8 +118,6 @@ def spectrum(
     highest_order
         Unless given, eight multiples of the lowest order that the torque can hold.
     """
-    from camring.metrics.spectrum import order_spectrum
-
     if of not in SPECTRA:
         raise InputError("of", f"is {of!r}", f"give one of {', '.join(SPECTRA)}")
     label, unit, factor = SPECTRA[of]
@@ -126,11 +125,12 @@ def spectrum(
     lowest = max(cycle.motor.surviving_order for cycle in cycles)
     highest = highest_order or HEARD_MULTIPLES * lowest
     for place, (cycle, name) in enumerate(zip(cycles, _names(cycles, labels), strict=True)):
-        found = order_spectrum(cycle, highest)
-        heard = found.orders % cycle.motor.surviving_order == 0
+        found = spectra(cycle, highest)
+        every = np.asarray(found.orders)
+        heard = every % cycle.motor.surviving_order == 0
         if of == "chamber_pressure":
             heard = np.ones_like(heard)
-        orders, height = found.orders[heard], factor * np.asarray(getattr(found, of))[heard]
+        orders, height = every[heard], factor * np.asarray(getattr(found, of))[heard]
         look = line(place, len(cycles))
         # Side by side, so that no bar hides another.
         aside = 0.012 * highest * (place - (len(cycles) - 1) / 2)

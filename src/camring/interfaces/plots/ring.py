@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from camring.interfaces.errors import InputError
+from camring.interfaces.plots.samples import Unrolled, unrolled
 from camring.interfaces.plots.style import line, sheet, styled
 from camring.interfaces.report.palette import RETURN, SUPPLY
-from camring.numerics.quantity import real
 
 if TYPE_CHECKING:
     from camring.physics.motor import Motor
@@ -49,8 +49,8 @@ def cam(*motors: "Motor", labels: tuple[str, ...] = ()) -> Figure:
     for place, (motor, name) in enumerate(zip(motors, names, strict=True)):
         look = line(place, len(motors))
         _draw_ring(ring, motor, name, look)
-        _draw_unrolled((lift, tilt, margin), motor, look)
-    _draw_windows(lift, motors[0])
+        _draw_unrolled((lift, tilt, margin), unrolled(motor, motor.cam.period, PERIOD), look)
+    _draw_windows(lift, unrolled(motors[0], motors[0].cam.period, PERIOD))
     ring.set(aspect="equal", xlabel="x, mm", ylabel="y, mm")
     ring.set_title("Working surface (thick) and pitch curve (thin)")
     left.legend(loc="outside lower center", fontsize=8)
@@ -64,9 +64,8 @@ def cam(*motors: "Motor", labels: tuple[str, ...] = ()) -> Figure:
 
 
 def _draw_ring(axes: Axes, motor: "Motor", name: str, look: dict) -> None:
-    angle = real(np.linspace(0, 2 * pi, AROUND))
-    jet = motor.cam.pitch_radius(angle)
-    radius, slope = np.asarray(jet.value), np.asarray(jet.first)
+    seen = unrolled(motor, 2 * pi, AROUND)
+    angle, radius, slope = (np.asarray(each) for each in (seen.angle, seen.radius, seen.slope))
     length, roller = np.hypot(radius, slope), float(motor.roller.radius)
     along, across = radius + radius / length * roller, -slope / length * roller
     x = along * np.cos(angle) - across * np.sin(angle)
@@ -76,30 +75,21 @@ def _draw_ring(axes: Axes, motor: "Motor", name: str, look: dict) -> None:
     axes.plot(1e3 * radius * np.cos(angle), 1e3 * radius * np.sin(angle), **thin)
 
 
-def _draw_unrolled(panels: tuple[Axes, Axes, Axes], motor: "Motor", look: dict) -> None:
-    from camring.geometry.contour import pressure_angle, undercut_factor
-    from camring.physics.cycle import reference_radius
-
-    angle = real(np.linspace(0, motor.cam.period, PERIOD))
-    jet = motor.cam.pitch_radius(angle)
-    lift = np.asarray(jet.value) - float(reference_radius(motor))
-    tilt = np.degrees(np.asarray(pressure_angle(jet)))
-    factor = np.asarray(undercut_factor(jet, motor.roller.radius))
-    for axes, values in zip(panels, (1e3 * lift, tilt, factor), strict=True):
-        axes.plot(np.degrees(angle), values, **look)
+def _draw_unrolled(panels: tuple[Axes, Axes, Axes], seen: Unrolled, look: dict) -> None:
+    millimetres, degrees = 1e3 * np.asarray(seen.lift), np.degrees(seen.pressure_angle)
+    shown = (millimetres, degrees, np.asarray(seen.undercut_factor))
+    for axes, values in zip(panels, shown, strict=True):
+        axes.plot(np.degrees(seen.angle), values, **look)
 
 
-def _draw_windows(axes: Axes, motor: "Motor") -> None:
-    plate = motor.valve_plate
-    angle = real(np.linspace(0, motor.cam.period, PERIOD))
+def _draw_windows(axes: Axes, seen: Unrolled) -> None:
     low, high = axes.get_ylim()
-    for port, colour, hatch, name in (
-        (plate.supply, SUPPLY, "///", "supply"),
-        (plate.return_, RETURN, "\\\\\\", "return"),
+    for opening, colour, hatch, name in (
+        (np.asarray(seen.supply_opening), SUPPLY, "///", "supply"),
+        (np.asarray(seen.return_opening), RETURN, "\\\\\\", "return"),
     ):
-        opening = np.asarray(plate.opening(port, angle))
         axes.fill_between(
-            np.degrees(angle),
+            np.degrees(seen.angle),
             0,
             0.22 * opening,
             where=opening > 0,
