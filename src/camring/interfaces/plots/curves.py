@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from camring.interfaces.errors import InputError
 from camring.interfaces.plots.samples import spectra
@@ -140,7 +139,8 @@ def spectrum(
         axes.plot(orders + aside, height, marker, label=name, **style)
     axes.set(xlabel="Order, per shaft revolution", ylabel=f"{label}, {unit}")
     axes.set_ylim(bottom=0)
-    axes.xaxis.set_major_locator(MaxNLocator(8, integer=True))
+    step = lowest * -(-highest // (HEARD_MULTIPLES * lowest))
+    axes.set_xticks(range(step, highest + 1, step))
     _key_above(axes)
     return figure
 

@@ -27,7 +27,7 @@ WIDE = 15  # times from the lowest to the highest: then levels stand in steps of
 
 # Where the result falls below zero: what is said, the colour, the hatching.
 BOUNDARIES = {
-    "min_contact_force": ("roller lifts off", "#8c1d40", "///"),
+    "min_contact_force": ("roller lifts off", "#7b3294", "///"),
     "vapour_margin": ("oil cavitates", "#000000", "..."),
 }
 LIMIT_DASHES: tuple[Any, ...] = ("--", "-.", ":", (0, (6, 2, 1, 2, 1, 2)))
@@ -139,6 +139,7 @@ def sweep_curves(grid: Grid, names: Sequence[str]) -> Figure:
                 ha="right",
                 color=LIMIT,
                 fontsize=8,
+                path_effects=[withStroke(linewidth=2.5, foreground="white")],
             )
         if not np.any(np.isfinite(grid.shown(name))):
             panel.text(0.5, 0.5, "no value", transform=panel.transAxes, ha="center")
