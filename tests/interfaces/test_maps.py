@@ -198,6 +198,8 @@ REFUSED = [
     ([f"{SHIFT}=0..1 deg", "--points", "many"], "must be a whole number"),
     ([f"{SHIFT}=0..1 deg", "--points", "1"], "takes 2 to 1000"),
     ([f"{SHIFT}=0..1 deg", "--point", "3"], "has 2 operating points"),
+    (["operating_points[1].speed=30..60 rpm"], "add --point 2"),
+    (["operating_points.weight=0..1"], "changes no result"),
     ([f"{SHIFT}=0..1 deg", "--results", "eficiency"], "you probably meant efficiency"),
 ]
 

@@ -63,7 +63,7 @@ def compare(paths: Sequence[str | Path], *, own_points: bool = False) -> Compari
     """
     if not FEWEST <= len(paths) <= MOST:
         raise InputError(
-            "MOTOR...", f"names {len(paths)}", f"name {FEWEST} to {MOST} motors to compare"
+            "camring compare", f"names {len(paths)}", f"name {FEWEST} to {MOST} motors to compare"
         )
     places = [Path(fspath(path)) for path in paths]
     files = [read_motor_file(_motor_in(place)) for place in places]

@@ -68,6 +68,8 @@ def sweep(
         for (key, text), count in zip(ranges.items(), counts, strict=True)
     )
     places = {each.key: _place(each.key, operating_point) for each in axes}
+    for key, steps in places.items():
+        _require_effect(key, steps, operating_point)
     systems = [
         _system(file, axes, values, places) for values in product(*(each.shown for each in axes))
     ]
@@ -156,6 +158,20 @@ def _place(key: str, operating_point: int) -> list[str | int]:
         if name == "operating_points" and not inside:
             steps.append(operating_point - 1)
     return steps
+
+
+def _require_effect(key: str, steps: list[str | int], operating_point: int) -> None:
+    """Refuse a number of the duty that no result of this operating point depends on."""
+    if steps[0] != "operating_points":
+        return
+    if steps[1] != operating_point - 1:
+        raise InputError(
+            key,
+            f"is not of operating point {operating_point}, whose results are asked for",
+            f"add --point {int(steps[1]) + 1}",
+        )
+    if steps[-1] == "weight":
+        raise InputError(key, "changes no result", "sweep another number")
 
 
 def _system(

@@ -11,7 +11,7 @@ FAILED = 1
 def compare(
     motors: Annotated[
         list[Path],
-        typer.Argument(metavar="MOTOR...", help="Motor files, or study folders for their best."),
+        typer.Argument(metavar="MOTOR", help="Motor files, or study folders for their best."),
     ],
     own_points: Annotated[
         bool,

@@ -36,7 +36,7 @@ def map(
     ] = None,
     results: Annotated[
         str | None,
-        typer.Option(help=f"Results to draw, separated by commas; else {','.join(USUAL)}."),
+        typer.Option(help=f"Results to draw, separated by commas; else {', '.join(USUAL)}."),
     ] = None,
     point: Annotated[
         int, typer.Option(help="Operating point, from 1, whose return and case pressure are kept.")

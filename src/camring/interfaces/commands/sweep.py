@@ -15,7 +15,7 @@ def sweep(
     ranges: Annotated[
         list[str],
         typer.Argument(
-            metavar="KEY=RANGE...",
+            metavar="KEY=RANGE",
             help='One or two keys of the motor file, motor.valve_plate.shift="-2 deg..2 deg"; '
             'a list of values will do, fluid.bulk_modulus="1 GPa, 1.4 GPa, 1.8 GPa".',
         ),
@@ -25,7 +25,7 @@ def sweep(
     ] = None,
     results: Annotated[
         str | None,
-        typer.Option(help=f"Results to show, separated by commas; else {','.join(USUAL)}."),
+        typer.Option(help=f"Results to show, separated by commas; else {', '.join(USUAL)}."),
     ] = None,
     point: Annotated[int, typer.Option(help="Operating point of the file, counted from 1.")] = 1,
     out: Annotated[
