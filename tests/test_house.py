@@ -21,7 +21,8 @@ MAY_IMPORT = {room: set(LADDER[: place + 1]) for place, room in enumerate(LADDER
 MAY_IMPORT["search"] = {"search", "numerics"}
 MAY_IMPORT["interfaces"].add("search")
 ONLY_INTERFACES = {"pydantic", "pint", "typer", "click", "rich", "xarray", "h5netcdf", "h5py"}
-NOBODY = {"matplotlib", "torch", "pandas"}
+ONLY_INTERFACES |= {"matplotlib"}  # and there only in `plots`, loaded when a figure is asked for
+NOBODY = {"torch", "pandas"}
 
 FILES = sorted(SOURCE.rglob("*.py"))
 

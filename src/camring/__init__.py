@@ -11,11 +11,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from camring.interfaces import plots
     from camring.interfaces.compiled import evaluate, simulate, summarise, waveforms
     from camring.interfaces.config import MotorFile, read_motor_file
     from camring.interfaces.errors import InputError
+    from camring.interfaces.operating_map import operating_map
     from camring.interfaces.optimisation import optimise, resume
     from camring.interfaces.study import Study, open_study
+    from camring.interfaces.sweep import sweep
     from camring.metrics.summary import Metrics
     from camring.objective.constraints import Constraints
     from camring.objective.design_space import DesignSpace
@@ -45,11 +48,13 @@ _HOMES = {
     "Weights": "camring.objective.terms",
     "evaluate": "camring.interfaces.compiled",
     "open_study": "camring.interfaces.study",
+    "operating_map": "camring.interfaces.operating_map",
     "optimise": "camring.interfaces.optimisation",
     "read_motor_file": "camring.interfaces.config",
     "resume": "camring.interfaces.optimisation",
     "simulate": "camring.interfaces.compiled",
     "summarise": "camring.interfaces.compiled",
+    "sweep": "camring.interfaces.sweep",
     "waveforms": "camring.interfaces.compiled",
 }
 
@@ -70,16 +75,21 @@ __all__ = [
     "__version__",
     "evaluate",
     "open_study",
+    "operating_map",
     "optimise",
+    "plots",
     "read_motor_file",
     "resume",
     "simulate",
     "summarise",
+    "sweep",
     "waveforms",
 ]
 
 
 def __getattr__(name: str) -> Any:
+    if name == "plots":
+        return import_module("camring.interfaces.plots")
     if name not in _HOMES:
         raise AttributeError(f"module 'camring' has no attribute {name!r}")
     found = getattr(import_module(_HOMES[name]), name)

@@ -14,7 +14,7 @@ from camring.interfaces.cli import COMMANDS
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "wheel_motor.toml"
 CAMRING = [sys.executable, "-c", "from camring.interfaces.cli import main; main()"]
-HEAVY = ("jax", "jaxlib", "equinox", "pint", "numpy", "scipy", "xarray")
+HEAVY = ("jax", "jaxlib", "equinox", "pint", "numpy", "scipy", "xarray", "matplotlib")
 
 
 def camring_(*arguments, **options):

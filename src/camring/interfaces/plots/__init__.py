@@ -1,0 +1,87 @@
+"""Figures for notebooks and papers: matplotlib's own, which the caller may change and save.
+
+>>> import camring
+>>> figure = camring.plots.torque(cycle)  # doctest: +SKIP
+>>> figure.savefig("torque.svg")  # doctest: +SKIP
+
+matplotlib is loaded when the first figure is asked for. No figure is pyplot's and
+no setting of matplotlib is changed, so these go with any backend and any style.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from camring.interfaces.errors import CamringError
+
+if TYPE_CHECKING:
+    from camring.interfaces.plots.curves import pressure_volume, spectrum, torque, waveforms
+    from camring.interfaces.plots.grids import (
+        efficiency_map,
+        result_map,
+        ripple_map,
+        sweep_curves,
+    )
+    from camring.interfaces.plots.ring import cam
+    from camring.interfaces.plots.style import save
+
+_HOMES = {
+    "cam": "ring",
+    "efficiency_map": "grids",
+    "pressure_volume": "curves",
+    "result_map": "grids",
+    "ripple_map": "grids",
+    "save": "style",
+    "spectrum": "curves",
+    "sweep_curves": "grids",
+    "torque": "curves",
+    "waveforms": "curves",
+}
+
+__all__ = [
+    "cam",
+    "efficiency_map",
+    "pressure_volume",
+    "require_matplotlib",
+    "result_map",
+    "ripple_map",
+    "save",
+    "spectrum",
+    "sweep_curves",
+    "torque",
+    "waveforms",
+]
+
+
+class MissingPlotExtra(CamringError, ImportError):
+    """matplotlib is not installed."""
+
+    exit_code = 2
+
+
+def require_matplotlib() -> None:
+    """Refuse to begin what will end in a picture.
+
+    Raises
+    ------
+    MissingPlotExtra
+        When matplotlib cannot be imported.
+    """
+    try:
+        import_module("matplotlib")
+    except ImportError as error:
+        raise MissingPlotExtra(
+            'Pictures need matplotlib, which is not installed; pip install "camring[plot]".'
+        ) from error
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    require_matplotlib()
+    found = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
