@@ -21,7 +21,7 @@ from camring.interfaces.compilation_cache import keep_compiled_programs
 from camring.interfaces.errors import CamringError
 from camring.interfaces.interrupt import EXIT_CODE as INTERRUPTED
 
-COMMANDS = ("new", "check", "simulate", "optimise", "resume", "report")
+COMMANDS = ("new", "check", "simulate", "optimise", "resume", "report", "export")
 DEBUG = "CAMRING_DEBUG"
 FAILED = 1
 

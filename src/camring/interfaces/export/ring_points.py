@@ -3,7 +3,6 @@
 import csv
 import io
 from collections.abc import Iterable, Sequence
-from math import degrees
 
 import numpy as np
 
@@ -123,6 +122,6 @@ def _step(ring: Ring, chord: float) -> tuple[float, float]:
     raise InputError(
         "--chord",
         f"is {1e6 * chord:g} um, but {_STEPS[-1]:g} deg from row to row still leaves "
-        f"{1e6 * strays:.3g} um at {degrees(ring.undercut.angle):.4g} deg",
+        f"{1e6 * strays:.3g} um between them",
         "give a larger one, or take the exact curves of the DXF",
     )
