@@ -49,12 +49,12 @@ class _Kernel:
     """The few names of the kernel that are used here."""
 
     def __init__(self) -> None:
-        from OCP import BRepBuilderAPI, BRepPrimAPI, Geom, STEPControl, TColgp, TColStd, gp
+        from OCP import BRepBuilderAPI, BRepPrimAPI, Geom, STEPControl, collections, gp
         from OCP.IFSelect import IFSelect_ReturnStatus
         from OCP.Interface import Interface_Static
 
         self.builder, self.solids, self.curves = BRepBuilderAPI, BRepPrimAPI, Geom
-        self.points, self.numbers, self.space = TColgp, TColStd, gp
+        self.arrays, self.space = collections, gp
         self.static = Interface_Static
         self.writer = STEPControl.STEPControl_Writer
         self.as_is = STEPControl.STEPControl_StepModelType.STEPControl_AsIs
@@ -93,11 +93,11 @@ def _curve(kernel: _Kernel, surface: ClosedSpline) -> Any:
     points = 1e3 * np.asarray(clamped.c)
     points[-1] = points[0]
     knots, counts = np.unique(1e3 * clamped.t, return_counts=True)
-    poles = kernel.points.TColgp_Array1OfPnt(1, len(points))
+    poles = kernel.arrays.Array1_gp_Pnt(1, len(points))
     for place, (x, y) in enumerate(points, 1):
         poles.SetValue(place, kernel.space.gp_Pnt(float(x), float(y), 0.0))
-    values = kernel.numbers.TColStd_Array1OfReal(1, len(knots))
-    repeats = kernel.numbers.TColStd_Array1OfInteger(1, len(knots))
+    values = kernel.arrays.Array1_double(1, len(knots))
+    repeats = kernel.arrays.Array1_int(1, len(knots))
     for place, (knot, count) in enumerate(zip(knots, counts, strict=True), 1):
         values.SetValue(place, float(knot))
         repeats.SetValue(place, int(count))
