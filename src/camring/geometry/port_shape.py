@@ -187,8 +187,6 @@ def _ramp_error(plate: ValvePlate, width: float) -> float:
     if not isinstance(plate.window, (LinearWindow, RoundWindow)):
         return 0.0
     ramp = float(plate.window.ramp)
-    errors = [
-        width / (ramp * float(port.width) / 2) - 1 for port in (plate.supply, plate.return_)
-    ]
+    errors = [width / (ramp * float(port.width) / 2) - 1 for port in (plate.supply, plate.return_)]
     worst = max(errors, key=abs)
     return worst if abs(worst) > 1e-9 else 0.0

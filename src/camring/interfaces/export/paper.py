@@ -102,9 +102,7 @@ class Paper:
         ]
         return ("\n".join(parts) + "\n").encode()
 
-    def _stroke(
-        self, path: str, width: float, dash: str, fill: str = "none", **marks: str
-    ) -> None:
+    def _stroke(self, path: str, width: float, dash: str, fill: str = "none", **marks: str) -> None:
         self._parts.append(
             element(
                 "path",

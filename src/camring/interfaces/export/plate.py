@@ -11,12 +11,12 @@ from camring.interfaces.export.about import About
 from camring.interfaces.export.ring_dxf import as_bytes, centre_lines, new_drawing, notes
 from camring.interfaces.export.ring_points import table_csv
 
-__all__ = ["EDGES", "assumptions", "plate_dxf", "plate_ports", "plate_table"]
+__all__ = ["EDGES", "assumptions", "circle_from", "plate_dxf", "plate_ports", "plate_table"]
 
 # Column of the table of edges -> unit.
 EDGES = {
-    "port": "1",
-    "number": "1",
+    "port": "-",
+    "number": "-",
     "opens": "deg",
     "full_from": "deg",
     "centre": "deg",
@@ -61,17 +61,27 @@ def plate_ports(file: MotorFile, circle: float | None) -> PlatePorts:
             else f"give --port-circle of at least {1e3 * least:.4g} mm, a smaller port_area, or a "
             "larger ramp"
         )
-        raise InputError(printable(file.path), error.problem, f"{way}; or leave out `plate`") from (
-            error
-        )
+        raise InputError(
+            printable(file.path), error.problem, f"{way}; or leave out `plate` and `sheet`"
+        ) from (error)
+
+
+def circle_from(ports: PlatePorts, asked: bool) -> str:
+    """Where the radius of the port circle comes from, in words."""
+    if asked:
+        return "as asked for"
+    if ports.shape == "round":
+        return "at which round ports of this area open as modelled"
+    return "assumed"
 
 
 def assumptions(ports: PlatePorts, asked: bool) -> list[str]:
     """What the drawing takes for granted because the motor file does not say it."""
-    source = "as asked for" if asked else "assumed (choose one with --port-circle)"
-    if ports.shape == "round" and not asked:
-        source = "at which round ports of this area open just as the model says"
-    told = [f"Port circle radius {1e3 * ports.circle:.4f} mm, {source}."]
+    source = circle_from(ports, asked)
+    told = [
+        f"Port circle radius {1e3 * ports.circle:.4f} mm, {source}"
+        + ("." if asked else "; choose one with --port-circle.")
+    ]
     if ports.shape == "timing":
         return [
             *told,
@@ -96,8 +106,8 @@ def plate_table(ports: PlatePorts, about: About, asked: bool) -> bytes:
     """The table of edges as CSV, one row for each port, degrees in [0, 360)."""
     told = [
         *about.lines(),
-        "opens to closes: where the middle of a chamber's port stands while the port is open to it; "
-        "slot_start and slot_end: the edges of the slot in the plate.",
+        "opens to closes: where the middle of a chamber's port stands while the port is open to "
+        "it; slot_start and slot_end: the edges of the slot in the plate.",
         *assumptions(ports, asked),
     ]
     rows = [[slot.kind, str(slot.number), *_edges(ports, slot)] for slot in ports.slots]
@@ -204,7 +214,7 @@ def _timing(space: Any, ports: PlatePorts, slot: Slot, height: float) -> None:
         turned = degrees(angle) % 360
         flipped = 90 < turned < 270
         text = space.add_text(
-            f"{turned:.2f}%%d",
+            f"{turned:.3f}%%d",
             height=height,
             rotation=turned + 180 if flipped else turned,
             dxfattribs={"layer": "TIMING"},

@@ -13,7 +13,7 @@ from camring.interfaces.config import MotorFile
 from camring.interfaces.config.document import printable
 from camring.interfaces.errors import InputError, quote
 from camring.interfaces.export.about import About, about
-from camring.interfaces.export.plate import plate_dxf, plate_ports, plate_table
+from camring.interfaces.export.plate import circle_from, plate_dxf, plate_ports, plate_table
 from camring.interfaces.export.ring import Ring, ring_of
 from camring.interfaces.export.ring_dxf import ring_dxf
 from camring.interfaces.export.ring_points import ring_points
@@ -131,8 +131,8 @@ def _points(job: _Job) -> Made:
 def _plate(job: _Job) -> Made:
     ports, asked = job.ports, job.circle_asked
     figures = {"port_circle": ports.circle, "port_height": ports.height}
-    source = "" if asked else ", assumed"
-    holds = f"ports on a circle of {1e3 * ports.circle:.4g} mm radius{source}"
+    source = circle_from(ports, asked)
+    holds = f"ports on a circle of {1e3 * ports.circle:.4g} mm radius, {source}"
     yield "valve_plate.dxf", plate_dxf(ports, job.about, asked), holds, figures
     table = plate_table(ports, job.about, asked)
     yield "valve_plate.csv", table, "edges of all ports, degrees", figures
@@ -256,6 +256,4 @@ def _length(option: str, text: str | None, example: str) -> float | None:
 
 def figures_of(written: Sequence[Product]) -> list[dict[str, Any]]:
     """What was written, as a document for programs; lengths in SI."""
-    return [
-        {"path": printable(each.path), "holds": each.holds, **each.figures} for each in written
-    ]
+    return [{"path": printable(each.path), "holds": each.holds, **each.figures} for each in written]

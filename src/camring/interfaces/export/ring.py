@@ -87,7 +87,8 @@ def ring_of(file: MotorFile) -> Ring:
             f"has a ring that no drawing can hold within {1e6 * NORMAL_ERROR:g} um: its undercut "
             f"factor falls to {undercut.factor:.3g} at {degrees(undercut.angle):.4g} deg, nearly a "
             f"cusp (a spline {error})",
-            "make the cam rounder there, or set [constraints] min_undercut_factor = 0.1 and optimise",
+            "make the cam rounder there, or set [constraints] min_undercut_factor = 0.1 and "
+            "optimise",
         ) from error
     low, high = outline.sharpest(roller)
     return Ring(

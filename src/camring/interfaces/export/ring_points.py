@@ -76,7 +76,12 @@ def ring_points(ring: Ring, about: About, chord: float) -> tuple[bytes, float]:
         "Normals point away from the shaft; a curvature is positive where the curve bends round "
         "the shaft.",
     ]
-    rows = zip(*([f"{value:.{digits}f}" for value in each] for each, digits in columns), strict=True)
+    # Adding zero turns a rounded -0 into 0.
+    written = (
+        [f"{value:.{digits}f}" for value in np.round(each, digits) + 0.0]
+        for each, digits in columns
+    )
+    rows = zip(*written, strict=True)
     return table_csv(told, COLUMNS, rows), step
 
 

@@ -13,6 +13,8 @@ from camring.numerics.closed_spline import ClosedSpline
 
 __all__ = ["ring_step"]
 
+_AP242 = 5
+
 
 def ring_step(ring: Ring, about: About, outer_radius: float, width: float) -> bytes:
     """A STEP file (AP242) of the ring: the working surface as a hole in a round disc.
@@ -32,11 +34,13 @@ def ring_step(ring: Ring, about: About, outer_radius: float, width: float) -> by
     """
     kernel = _kernel()
     solid = _solid(kernel, ring.surface, 1e3 * outer_radius, 1e3 * width)
-    kernel.static.SetCVal_s("write.step.unit", "MM")
-    kernel.static.SetCVal_s("write.step.product.name", f"Cam ring of {about.motor}")
-    kernel.static.SetIVal_s("write.step.schema", 5)
+    # Settings exist only once a writer does.
     writer = kernel.writer()
+    kernel.static.SetCVal_s("write.step.unit", "MM")
+    kernel.static.SetCVal_s("write.step.product.name", f"Cam ring, {_ascii(about.motor)}")
+    kernel.static.SetIVal_s("write.step.schema", _AP242)
     writer.Transfer(solid, kernel.as_is)
+    _head(kernel, writer, about)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "ring.step"
         done = writer.Write(str(path))
@@ -50,15 +54,36 @@ class _Kernel:
 
     def __init__(self) -> None:
         from OCP import BRepBuilderAPI, BRepPrimAPI, Geom, STEPControl, collections, gp
+        from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
         from OCP.IFSelect import IFSelect_ReturnStatus
         from OCP.Interface import Interface_Static
+        from OCP.Message import Message
+        from OCP.TCollection import TCollection_HAsciiString
 
         self.builder, self.solids, self.curves = BRepBuilderAPI, BRepPrimAPI, Geom
         self.arrays, self.space = collections, gp
         self.static = Interface_Static
         self.writer = STEPControl.STEPControl_Writer
         self.as_is = STEPControl.STEPControl_StepModelType.STEPControl_AsIs
+        self.header, self.text = APIHeaderSection_MakeHeader, TCollection_HAsciiString
+        # The kernel would tell of its progress on stdout.
+        for printer in list(Message.DefaultMessenger_s().Printers()):
+            Message.DefaultMessenger_s().RemovePrinter(printer)
         self.done = IFSelect_ReturnStatus.IFSelect_RetDone
+
+
+def _head(kernel: _Kernel, writer: Any, about: About) -> None:
+    """The file's header: motor, program and the sense of angles."""
+    head = kernel.header(writer.Model())
+    head.SetName(kernel.text(_ascii(f"Cam ring, {about.motor}")))
+    head.SetOriginatingSystem(kernel.text(about.program))
+    head.SetAuthorValue(1, kernel.text(about.program))
+    head.SetOrganizationValue(1, kernel.text(""))
+    head.SetDescriptionValue(1, kernel.text(_ascii(" ".join(about.lines()))))
+
+
+def _ascii(text: str) -> str:
+    return text.encode("ascii", "replace").decode()
 
 
 def _kernel() -> _Kernel:

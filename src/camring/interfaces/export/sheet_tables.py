@@ -37,7 +37,7 @@ def main_dimensions(paper: Paper, x: float, y: float, ring: Ring, body: Body) ->
         ("Pitch curve, smallest radius", f"({1e3 * ring.inner[0]:.4f})", ""),
         ("Pitch curve, largest radius", f"({1e3 * ring.outer[0]:.4f})", ""),
         ("Stroke", f"({1e3 * ring.stroke:.4f})", ""),
-        ("Lobes", lobes, "± 0.01° each"),
+        ("Lobes", lobes, "± 0.01° each" if ring.repeats > 1 else ""),
         ("Smallest hollow radius: limits the wheel", f"({1e3 * ring.hollow:.3f})", ""),
         ("Smallest bulging radius", f"({nose})", ""),
         ("Undercut factor, smallest", f"({ring.undercut.factor:.4f})", ""),
@@ -73,9 +73,7 @@ def port_angles(paper: Paper, x: float, y: float, ports: PlatePorts) -> float:
     every = f"; then every {360 / count:.6g}°" if count > 1 else ""
     paper.text(x, y, f"Port angles, degrees{every}", 3.5, bold=True)
     head = ("Port", "opens", "full from", "full until", "closes", "slot from", "slot to")
-    return _table(
-        paper, x, y + 2, (21, 24, 24, 24, 24, 24, 24), head, rows, "l r r r r r r"
-    )
+    return _table(paper, x, y + 2, (21, 24, 24, 24, 24, 24, 24), head, rows, "l r r r r r r")
 
 
 def profile(paper: Paper, x: float, y: float, ring: Ring) -> float:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from camring.geometry.port_shape import PlatePorts, Slot
-from camring.interfaces.export.paper import CHAIN, THICK, THIN, Paper, around
+from camring.interfaces.export.paper import CHAIN, THICK, Paper, around
 from camring.interfaces.export.ring import Ring
 from camring.interfaces.export.ring_svg import path_of
 from camring.numerics.closed_spline import ClosedSpline
@@ -46,8 +46,7 @@ def draw_ring(paper: Paper, centre: Place, scale: float, ring: Ring, outer_radiu
             (centre[0] - x, centre[1] - y), (centre[0] + x, centre[1] + y), width=0.13, dash=CHAIN
         )
     paper.text(centre[0] + outer + 5, centre[1] + 0.9, "0°", 2.8)
-    _roller(paper, centre, scale, ring)
-    _radii(paper, centre, scale, ring, outer)
+    _leaders(paper, centre, scale, ring, outer)
     _angles(paper, centre, scale, ring)
 
 
@@ -60,46 +59,79 @@ def _curve(
     paper.path(path_of(shifted, scale, 4), width, dash)
 
 
-def _near(ring: Ring, angle: float, wanted: float) -> float:
-    """An extreme's angle in the period nearest to a wanted one, degrees."""
+class _Corner(NamedTuple):
+    """A place for words beside the ring: their left end from its centre, and what lies near."""
+
+    dx: float
+    dy: float
+    angle: float
+
+
+_CORNERS = [
+    _Corner(-82.0, -80.0, 125.0),
+    _Corner(36.0, -82.0, 55.0),
+    _Corner(-82.0, 80.0, 225.0),
+    _Corner(36.0, 80.0, 315.0),
+]
+
+
+def _nearest(ring: Ring, angle: float, free: list[_Corner]) -> tuple[float, _Corner]:
+    """An extreme's angle in degrees, in the period that lies nearest to a free corner."""
     period = degrees(ring.period)
-    return degrees(angle) + period * round((wanted - degrees(angle)) / period)
+    found = []
+    for corner in free:
+        turns = round((corner.angle - degrees(angle)) / period)
+        at = degrees(angle) + period * turns
+        found.append((abs((at - corner.angle + 180) % 360 - 180), at, corner))
+    near = [each for each in found if each[0] < period / 2 and ring.repeats > 1]
+    _, at, corner = near[0] if near else min(found, key=lambda each: each[0])
+    free.remove(corner)
+    return at, corner
 
 
-def _roller(paper: Paper, centre: Place, scale: float, ring: Ring) -> None:
-    angle = _near(ring, ring.outer[1], 315.0)
-    place = around(centre, 1e3 * scale * ring.outer[0], angle)
-    radius = 1e3 * scale * ring.roller_radius
-    paper.circle(place, radius, 0.25)
-    paper.circle(place, 0.4, 0.25, fill="#000")
-    corner = (centre[0] + 52, centre[1] + 79)
-    paper.arrow(around(place, radius, -60), corner, (corner[0] + 2, corner[1]))
-    paper.text(corner[0] + 3, corner[1] + 0.9, f"roller Ø {2e3 * ring.roller_radius:.4g}", 2.8)
+def _leaders(paper: Paper, centre: Place, scale: float, ring: Ring, outer: float) -> None:
+    """Words with arrows: radii of the surface, pitch curve, roller, outer diameter."""
+    free, grown = list(_CORNERS), 1e3 * scale
+    angle, corner = _nearest(ring, ring.outer[1], free)
+    told = f"R {1e3 * ring.surface_outer:.4f} largest"
+    _leader(paper, centre, corner, around(centre, grown * ring.surface_outer, angle), told)
+    angle, corner = _nearest(ring, ring.inner[1], free)
+    told = f"R {1e3 * ring.surface_inner:.4f} smallest"
+    _leader(paper, centre, corner, around(centre, grown * ring.surface_inner, angle), told)
+
+    corner = free.pop(0)
+    told = f"pitch curve R {1e3 * ring.inner[0]:.4f} … {1e3 * ring.outer[0]:.4f}"
+    _leader(paper, centre, corner, _on_pitch_curve(centre, scale, ring, corner.angle), told)
+
+    corner = free.pop(0)
+    middle, radius = _on_pitch_curve(centre, scale, ring, corner.angle), grown * ring.roller_radius
+    paper.circle(middle, radius, 0.25)
+    paper.circle(middle, 0.4, 0.25, fill="#000")
+    edge = around(middle, radius, corner.angle)
+    _leader(paper, centre, corner, edge, f"roller Ø {2e3 * ring.roller_radius:.4g}")
+
+    side, left = around(centre, outer, 180 + 12), centre[0] - 84
+    paper.arrow(side, (left, side[1] + 8))
+    paper.text(left, side[1] + 11.4, f"Ø {2 * outer / scale:.5g}", 2.8)
+    paper.box(left, side[1] + 12.6, 4.4, 4.4, 0.25)
+    paper.text(left + 2.2, side[1] + 15.9, "A", 2.8, anchor="middle")
 
 
-def _radii(paper: Paper, centre: Place, scale: float, ring: Ring, outer: float) -> None:
-    """Leaders from the surface to its smallest and largest radius, and to the pitch curve."""
-    leaders = (
-        (ring.surface_outer, ring.outer[1], 125.0, (-82.0, -84.0),
-         f"R {1e3 * ring.surface_outer:.4f} largest"),
-        (ring.surface_inner, ring.inner[1], 55.0, (36.0, -84.0),
-         f"R {1e3 * ring.surface_inner:.4f} smallest"),
-        (ring.outer[0], ring.outer[1], 225.0, (-82.0, 80.0),
-         f"pitch curve R {1e3 * ring.inner[0]:.4f} … {1e3 * ring.outer[0]:.4f}"),
-    )  # fmt: skip
-    for radius, angle, wanted, (dx, dy), told in leaders:
-        place = around(centre, 1e3 * scale * radius, _near(ring, angle, wanted))
-        corner = (centre[0] + dx, centre[1] + dy)
-        paper.text(*corner, told, 2.8)
-        width = 1.45 * len(told)
-        end = corner[0] + (width if place[0] > corner[0] + width else 0.0)
-        end = min(max(place[0], corner[0]), corner[0] + width) if dx > 0 else end
-        below = corner[1] + 1.0 if dy < 0 else corner[1] - 3.0
-        paper.arrow(place, (end, below))
-        paper.line((corner[0], below), (corner[0] + width, below))
-    side = around(centre, outer, 180 + 18)
-    paper.arrow(side, (centre[0] - 84, side[1] + 8))
-    paper.text(centre[0] - 84, side[1] + 11.4, f"Ø {2 * outer / scale:.5g}", 2.8)
+def _on_pitch_curve(centre: Place, scale: float, ring: Ring, angle: float) -> Place:
+    parameter = ring.outline.parameter_at(np.asarray(radians(angle)))
+    radius = float(np.abs(ring.outline.places(parameter).point))
+    return around(centre, 1e3 * scale * radius, angle)
+
+
+def _leader(paper: Paper, centre: Place, corner: _Corner, place: Place, told: str) -> None:
+    """Words over a line from which an arrow goes to a place."""
+    x, y = centre[0] + corner.dx, centre[1] + corner.dy
+    width = 1.45 * len(told)
+    # Words stand between their line and the ring only above it.
+    below = y + 1.0 if corner.dy < 0 else y - 3.2
+    paper.text(x, y, told, 2.8)
+    paper.line((x, below), (x + width, below))
+    paper.arrow(place, (min(max(place[0], x), x + width), below))
 
 
 def _angles(paper: Paper, centre: Place, scale: float, ring: Ring) -> None:
@@ -151,7 +183,9 @@ def draw_plate(paper: Paper, centre: Place, scale: float, ports: PlatePorts) -> 
     grown = 1e3 * scale
     for slot in ports.slots:
         paper.path(_slot_path(centre, grown, ports, slot), 0.35)
-        x, y = around(centre, grown * ports.circle, degrees(slot.centre))
+        radius = grown * (ports.circle if grown * ports.height > 4 else ports.inner)
+        radius -= 0.0 if grown * ports.height > 4 else 2.2
+        x, y = around(centre, radius, degrees(slot.centre))
         paper.text(x, y + 0.9, slot.kind[0].upper(), 2.5, anchor="middle")
     paper.circle(centre, grown * ports.circle, 0.13, CHAIN)
     reach = grown * ports.outer
@@ -160,19 +194,37 @@ def draw_plate(paper: Paper, centre: Place, scale: float, ports: PlatePorts) -> 
         paper.line(
             (centre[0] - x, centre[1] - y), (centre[0] + x, centre[1] + y), width=0.13, dash=CHAIN
         )
-    for kind in ("supply", "return"):
-        slot = next(slot for slot in ports.slots if slot.kind == kind)
-        for angle in (slot.opens, slot.closes):
-            turned = degrees(angle) % 360
-            paper.line(
-                around(centre, grown * ports.inner, turned), around(centre, reach + 2.5, turned)
-            )
-            flip = 90 < turned < 270
-            x, y = around(centre, reach + 3.2, turned - (0.75 if not flip else -0.75))
-            paper.text(x, y, f"{turned:.2f}°", 2.2, anchor="end" if flip else "start",
-                       turned=turned + 180 if flip else turned)  # fmt: skip
-    told = f"port circle R {1e3 * ports.circle:.4g}, height {1e3 * ports.height:.4g}"
+    _port_angles(paper, centre, grown, ports)
+    what = "diameter" if ports.shape == "round" else "height"
+    told = f"port circle R {1e3 * ports.circle:.4g}, {what} {1e3 * ports.height:.4g}"
     paper.text(centre[0], centre[1] + 45.5, told, 2.5, anchor="middle")
+
+
+def _port_angles(paper: Paper, centre: Place, grown: float, ports: PlatePorts) -> None:
+    """Ticks where the first supply and the first return window open and close, with degrees."""
+    reach = grown * ports.outer
+    pair = [next(s for s in ports.slots if s.kind == kind) for kind in ("supply", "return")]
+    edges = sorted(degrees(a) % 360 for slot in pair for a in (slot.opens, slot.closes))
+    apart = degrees(3.0 / (reach + 6))
+    places = list(edges)
+    for place in range(1, len(places)):
+        places[place] = max(places[place], places[place - 1] + apart)
+    # As far ahead as behind: pairs that were pushed apart stand about their middle.
+    for place in range(1, len(places)):
+        pushed = (places[place] - edges[place]) / 2
+        if pushed > 0 and places[place - 1] == edges[place - 1]:
+            places[place] -= pushed
+            places[place - 1] -= pushed
+    for turned, shown in zip(edges, places, strict=True):
+        paper.line(
+            around(centre, grown * ports.inner, turned),
+            around(centre, reach + 2, turned),
+            around(centre, reach + 5, shown),
+        )
+        flip = 90 < shown % 360 < 270
+        x, y = around(centre, reach + 5.6, shown - (0.8 if not flip else -0.8))
+        paper.text(x, y, f"{turned:.2f}°", 2.2, anchor="end" if flip else "start",
+                   turned=shown + 180 if flip else shown)  # fmt: skip
 
 
 def _slot_path(centre: Place, grown: float, ports: PlatePorts, slot: Slot) -> str:
