@@ -20,7 +20,19 @@ LADDER = ("numerics", "geometry", "physics", "metrics", "objective", "interfaces
 MAY_IMPORT = {room: set(LADDER[: place + 1]) for place, room in enumerate(LADDER)}
 MAY_IMPORT["search"] = {"search", "numerics"}
 MAY_IMPORT["interfaces"].add("search")
-ONLY_INTERFACES = {"pydantic", "pint", "typer", "click", "rich", "xarray", "h5netcdf", "h5py"}
+ONLY_INTERFACES = {
+    "pydantic",
+    "pint",
+    "typer",
+    "click",
+    "rich",
+    "xarray",
+    "h5netcdf",
+    "h5py",
+    "ezdxf",
+    "xlsxwriter",
+    "OCP",
+}
 NOBODY = {"matplotlib", "torch", "pandas"}
 
 FILES = sorted(SOURCE.rglob("*.py"))
