@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["write_workbook"]
 
 _HEAD_ROWS = 2  # names and units
+_A4 = 9
 _CHARTS = (
     ("Shaft torque", ("torque",)),
     ("Chamber pressure", ("chamber_pressure",)),
@@ -51,6 +52,9 @@ def write_workbook(dataset: "xarray.Dataset", place: Path) -> None:
     points = [int(number) for number in dataset["operating_point"].to_numpy()]
     for place_of, number in enumerate(points):
         _numbers(book.add_worksheet(f"Point {number}"), dataset, place_of, bold)
+    charts.set_paper(_A4)
+    charts.set_landscape()
+    charts.fit_to_pages(1, 1)
     _draw(book, charts, dataset, points)
     book.close()
 
@@ -66,6 +70,8 @@ def _summary(sheet: Any, dataset: "xarray.Dataset", bold: Any) -> None:
     sheet.set_column(0, 0, 36)
     sheet.set_column(1, 1 + len(points), 12)
     sheet.freeze_panes(first + 1, 2)
+    sheet.set_paper(_A4)
+    sheet.fit_to_pages(1, 0)
 
 
 def _numbers(sheet: Any, dataset: "xarray.Dataset", point: int, bold: Any) -> None:
