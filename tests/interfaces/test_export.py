@@ -217,7 +217,8 @@ def test_the_ports_are_drawn_where_the_table_has_them(exported):
 def test_other_windows_are_drawn_too(tmp_path, lines):
     text = motor_files.SOUND
     if "tabulated" in lines:
-        text = motor_files.without_line("ramp", text)
+        for key in ("ramp", '"motor.valve_plate.ramp"'):
+            text = motor_files.without_line(key, text)
     file = motor(motor_files.added("[motor.valve_plate]", lines, text))
     export(file, tmp_path, only=["plate", "sheet"])
     drawing = ezdxf.readfile(tmp_path / "valve_plate.dxf")
@@ -337,7 +338,8 @@ def test_the_solid_read_back_has_the_lengths_and_areas_of_the_ring(exported, tmp
     assert len(around) == 2
     # 0.1 um of normal error allow the length of 667 mm about as much.
     np.testing.assert_allclose(around, length, atol=0.3 * MICROMETRE)
-    assert min(abs(area / (25 * length) - 1) for area in found.faces) < 5e-7
+    # The kernel integrates an area over many spans to a hundred-thousandth.
+    assert min(abs(area / (25 * length) - 1) for area in found.faces) < 2e-5
     # Exact places on the surface lie on the solid.
     angle = np.array([radians(17), radians(118), radians(243.3)])
     outline = outline_of(file.system.motor.cam)

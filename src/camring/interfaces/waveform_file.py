@@ -196,6 +196,8 @@ def write_simulation(
 
 def require_known_ending(path: Path) -> None:
     """Raises `InputError` for a file name whose ending is no kind of waveform file."""
+    if path.is_dir():
+        raise InputError(str(path), "is a folder", "give the name of a file, such as out.nc")
     if path.suffix.lower() not in _KINDS:
         ending = f"ends in {quote(path.suffix)}" if path.suffix else "has no ending"
         raise InputError(
@@ -297,8 +299,6 @@ def _require_replaceable(place: Path, kind: _Kind) -> None:
     """A slip of the hand must not replace a motor file by waveforms."""
     if not place.parent.is_dir():
         raise InputError(str(place), "lies in no existing folder", "make the folder first")
-    if place.is_dir():
-        raise InputError(str(place), "is a folder", "give the name of a file, such as out.nc")
     if not place.exists():
         return
     try:

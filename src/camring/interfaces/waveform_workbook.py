@@ -1,5 +1,6 @@
 """Waveforms and results as a workbook: a summary, charts that Excel draws, the numbers."""
 
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ __all__ = ["write_workbook"]
 
 _HEAD_ROWS = 2  # names and units
 _A4 = 9
+_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")  # Okabe and Ito
 _CHARTS = (
     ("Shaft torque", ("torque",)),
     ("Chamber pressure", ("chamber_pressure",)),
@@ -96,20 +98,20 @@ def _draw(book: Any, sheet: Any, dataset: "xarray.Dataset", points: list[int]) -
     last = _HEAD_ROWS + dataset.sizes["angle"] - 1
     for place, (title, shown) in enumerate(_CHARTS):
         chart = book.add_chart({"type": "scatter", "subtype": "straight"})
-        for number in points:
-            for name in shown:
-                column, tab = names.index(name), f"Point {number}"
-                told = f"{tab}, {name.replace('_', ' ')}" if len(shown) > 1 else tab
-                chart.add_series(
-                    {
-                        "name": told,
-                        "categories": [tab, _HEAD_ROWS, 0, last, 0],
-                        "values": [tab, _HEAD_ROWS, column, last, column],
-                        "line": {"width": 1.25},
-                    }
-                )
+        for drawn, (number, name) in enumerate(product(points, shown)):
+            column, tab = names.index(name), f"Point {number}"
+            told = f"{tab}, {name.replace('_', ' ')}" if len(shown) > 1 else tab
+            chart.add_series(
+                {
+                    "name": told,
+                    "categories": [tab, _HEAD_ROWS, 0, last, 0],
+                    "values": [tab, _HEAD_ROWS, column, last, column],
+                    "line": {"width": 1.25, "color": _COLOURS[drawn % len(_COLOURS)]},
+                }
+            )
         chart.set_title({"name": title, "name_font": {"size": 12}})
-        chart.set_x_axis({"name": "Shaft angle, deg", "min": 0, "max": 360, "major_unit": 30})
+        chart.set_x_axis({"name": "Shaft angle, deg", "min": 0, "max": 360, "major_unit": 30,
+                          "label_position": "low"})  # fmt: skip
         chart.set_y_axis({"name": f"{title}, {EVERYDAY[shown[0]].unit}"})
         chart.set_legend({"position": "bottom"})
         chart.set_size({"width": 620, "height": 340})
