@@ -1,6 +1,7 @@
 """The ring's two curves as DXF: one closed cubic spline each, in millimetres."""
 
 import io
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -78,8 +79,9 @@ def centre_lines(space: Any, reach: float) -> None:
 
 
 def notes(space: Any, corner: tuple[float, float], height: float, lines: list[str]) -> None:
-    """Lines of text below each other, mm."""
-    for row, line in enumerate(lines):
+    """Lines of text below each other, the long ones folded, mm."""
+    rows = [row for line in lines for row in textwrap.wrap(line, 84)]
+    for row, line in enumerate(rows):
         space.add_text(
             line,
             height=height,
