@@ -265,6 +265,17 @@ def test_an_undercut_ring_is_refused_with_the_place_and_a_way_out(tmp_path):
     }
 
 
+def test_any_name_gives_files_that_can_be_read(tmp_path):
+    name = 'name = "Größe <4> & 100 %"'
+    export(motor(motor_files.with_line(name)), tmp_path)
+    for each in ("ring.svg", "sheet.svg"):
+        ElementTree.parse(tmp_path / each)
+    for each in ("ring.dxf", "valve_plate.dxf"):
+        drawing = ezdxf.readfile(tmp_path / each)
+        assert not drawing.audit().errors
+        assert "Größe <4> & 100 %" in dict(drawing.header.custom_vars.properties).values()
+
+
 def test_nothing_is_replaced_unasked(tmp_path):
     file = motor(motor_files.SOUND)
     (tmp_path / "ring.svg").write_text("mine")
@@ -307,8 +318,11 @@ def test_a_slip_is_told_in_a_sentence(tmp_path, arguments, said):
 
 
 def test_the_command_writes_and_tells(tmp_path):
-    done = camring_("export", EXAMPLE, "--out", tmp_path / "out", "--json")
-    assert done.returncode == 0, done.stderr
+    # No place for caches of anyone, which must neither fail nor spoil the document.
+    (tmp_path / "cache").touch()
+    nowhere = {"XDG_CACHE_HOME": str(tmp_path / "cache")}
+    done = camring_("export", EXAMPLE, "--out", tmp_path / "out", "--json", environment=nowhere)
+    assert (done.returncode, done.stderr) == (0, "")
     files = json.loads(done.stdout)["files"]
     assert {each["path"] for each in files} == {str(path) for path in (tmp_path / "out").iterdir()}
     assert max(each.get("normal_error", 0) for each in files) <= 1e-7

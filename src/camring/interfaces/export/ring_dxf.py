@@ -1,6 +1,7 @@
 """The ring's two curves as DXF: one closed cubic spline each, in millimetres."""
 
 import io
+import logging
 import textwrap
 from typing import TYPE_CHECKING, Any
 
@@ -54,6 +55,8 @@ def ring_dxf(ring: Ring, about: About) -> bytes:
 
 def new_drawing(about: About, layers: dict[str, tuple[int, str, int]]) -> "Drawing":
     """An empty drawing in millimetres; layers have colour, line type and width in 0.01 mm."""
+    # Imported, it lists the system's fonts, and would warn where it cannot keep the list.
+    logging.getLogger("ezdxf").addHandler(logging.NullHandler())
     import ezdxf
 
     drawing = ezdxf.new("R2010", setup=["linetypes"], units=MILLIMETRES)
