@@ -12,7 +12,12 @@ import xarray
 
 from camring.interfaces import waveform_file
 from camring.interfaces.errors import InputError
-from camring.interfaces.waveform_file import WAVEFORMS, waveform_dataset, write_waveforms
+from camring.interfaces.waveform_file import (
+    ENDINGS,
+    WAVEFORMS,
+    waveform_dataset,
+    write_waveforms,
+)
 from camring.physics.cycle import simulate
 from camring.physics.gallery import Manifold
 from camring.physics.resolution import Resolution
@@ -152,9 +157,28 @@ def test_a_write_that_fails_leaves_the_old_file_alone(simulated, tmp_path, monke
 def test_a_motor_file_is_never_replaced_by_waveforms(simulated, tmp_path):
     path = tmp_path / "motor.toml"
     path.write_text("[motor]\n")
-    with pytest.raises(InputError, match="no NetCDF file"):
+    with pytest.raises(InputError, match="no kind of waveform file"):
         write_waveforms(path, *simulated)
     assert path.read_text() == "[motor]\n"
+
+
+@pytest.mark.parametrize(
+    ("ending", "kind"), [(".nc", "NetCDF"), (".csv", "CSV"), (".xlsx", "XLSX"), (".mat", "MAT")]
+)
+def test_a_file_of_another_kind_is_never_replaced(simulated, tmp_path, ending, kind):
+    path = tmp_path / f"out{ending}"
+    path.write_text("[motor]\n")
+    with pytest.raises(InputError, match=f"no {kind} file"):
+        write_waveforms(path, *simulated, samples=36)
+    assert path.read_text() == "[motor]\n"
+
+
+@pytest.mark.parametrize("name", ["out.txt", "out", "out.csvv"])
+def test_an_unknown_ending_is_told_those_that_are_known(simulated, tmp_path, name):
+    with pytest.raises(InputError) as said:
+        write_waveforms(tmp_path / name, *simulated)
+    assert all(ending in str(said.value) for ending in ENDINGS)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_place_that_does_not_exist_is_said_in_a_sentence(simulated, tmp_path):

@@ -31,6 +31,7 @@ COMMANDS = (
     "optimise",
     "resume",
     "report",
+    "export",
 )
 DEBUG = "CAMRING_DEBUG"
 FAILED = 1

@@ -1,13 +1,15 @@
-"""Waveforms as one NetCDF file: what a chamber and the shaft do over one revolution.
+"""Waveforms over one revolution, and the results beside them, as a file of several kinds.
 
 The dataset has the dimensions `operating_point` and `angle` (rad of shaft);
-each variable carries its unit and a name for people in its attributes, so the
-file explains itself to xarray, MATLAB, ncdump or whatever comes.
+each variable carries its unit and a name for people in its attributes. The
+name's ending says the kind: `.nc` (NetCDF) and `.mat` (MATLAB) hold SI for
+programs, `.csv` and `.xlsx` an engineer's units for people.
 """
 
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from math import pi
 from pathlib import Path
@@ -16,7 +18,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from camring import __version__
-from camring.interfaces.errors import InputError
+from camring.interfaces.config.document import printable
+from camring.interfaces.errors import InputError, quote
 
 if TYPE_CHECKING:
     import xarray
@@ -24,10 +27,19 @@ if TYPE_CHECKING:
     from camring.physics.cycle import Cycle
     from camring.physics.system import System
 
-__all__ = ["WAVEFORMS", "waveform_dataset", "write_waveforms"]
+__all__ = [
+    "ENDINGS",
+    "RESULT",
+    "WAVEFORMS",
+    "require_known_ending",
+    "waveform_dataset",
+    "write_simulation",
+    "write_waveforms",
+]
 
 SAMPLES = 3600  # of one revolution: a tenth of a degree apart
-_HDF5 = b"\x89HDF\r\n\x1a\n"
+RESULT = "result_"
+"""Before the name of each result in the dataset, where some waveforms have the same names."""
 
 # Name -> unit as UDUNITS writes it, name for people.
 WAVEFORMS: Mapping[str, tuple[str, str]] = {
@@ -61,6 +73,7 @@ def waveform_dataset(
     *,
     source: str = "",
     samples: int = SAMPLES,
+    results: Sequence[Mapping[str, float]] = (),
 ) -> "xarray.Dataset":
     """The waveforms of one revolution at every operating point.
 
@@ -72,6 +85,8 @@ def waveform_dataset(
         The motor file's text, kept in the attributes.
     samples
         Angles, evenly spaced from 0, the end of the revolution left out.
+    results
+        Those of model.md section 10 for each operating point, SI; kept when given.
     """
     import equinox
     import jax.numpy as jnp
@@ -108,7 +123,23 @@ def waveform_dataset(
         "angle": ("angle", angle, {"units": "rad", "long_name": "shaft angle"}),
         **duties,
     }
-    return xarray.Dataset(variables, coordinates, _attributes(system, source))
+    return xarray.Dataset(
+        {**variables, **_results(results)}, coordinates, _attributes(system, source)
+    )
+
+
+def _results(results: Sequence[Mapping[str, float]]) -> dict[str, tuple]:
+    from camring.interfaces.report.quantities import QUANTITIES
+    from camring.interfaces.waveform_units import result_units
+
+    units = result_units()
+    found = {}
+    for name in results[0] if results else ():
+        label = QUANTITIES[name].label if name in QUANTITIES else name.replace("_", " ")
+        values = np.array([float(each[name]) for each in results])
+        attributes = {"units": units.get(name, "1"), "long_name": label}
+        found[RESULT + name] = ("operating_point", values, attributes)
+    return found
 
 
 def write_waveforms(
@@ -119,23 +150,72 @@ def write_waveforms(
     source: str = "",
     samples: int = SAMPLES,
 ) -> Path:
-    """Write the waveforms to a NetCDF file, whole or not at all.
+    """Write the waveforms to a file of the kind its ending says, whole or not at all.
 
     Raises
     ------
     InputError
-        When a file stands there that is no NetCDF file, or the place cannot be written.
+        When the ending is unknown, an extra is missing, a file of another kind
+        stands there, or the place cannot be written.
+    """
+    return write_simulation(path, system, cycles, (), source=source, samples=samples)[0]
+
+
+def write_simulation(
+    path: str | Path,
+    system: "System",
+    cycles: Sequence["Cycle"],
+    results: Sequence[Mapping[str, float]],
+    *,
+    source: str = "",
+    samples: int = SAMPLES,
+) -> list[Path]:
+    """Write waveforms and results; the files written.
+
+    One file holds both, but a CSV file has one table: results then stand in
+    another beside it, `out_results.csv` for `out.csv`.
+
+    Raises
+    ------
+    InputError
+        As `write_waveforms`.
     """
     place = Path(path)
-    _require_replaceable(place)
-    dataset = waveform_dataset(system, cycles, source=source, samples=samples)
-    packed = {name: {"zlib": True, "complevel": 4} for name in dataset.data_vars}
+    require_known_ending(place)
+    kind = _KINDS[place.suffix.lower()]
+    places = [place]
+    if place.suffix.lower() == ".csv" and results:
+        places.append(place.with_name(f"{place.stem}_results{place.suffix}"))
+    for each in places:
+        _require_replaceable(each, kind)
+    dataset = waveform_dataset(system, cycles, source=source, samples=samples, results=results)
+    for number, each in enumerate(places):
+        _write_whole(each, kind.writers[number], dataset)
+    return places
+
+
+def require_known_ending(path: Path) -> None:
+    """Raises `InputError` for a file name whose ending is no kind of waveform file."""
+    if path.is_dir():
+        raise InputError(str(path), "is a folder", "give the name of a file, such as out.nc")
+    if path.suffix.lower() not in _KINDS:
+        ending = f"ends in {quote(path.suffix)}" if path.suffix else "has no ending"
+        raise InputError(
+            printable(path),
+            f"{ending}, which is no kind of waveform file",
+            f"end its name in one of {', '.join(_KINDS)}",
+        )
+
+
+def _write_whole(
+    place: Path, writer: Callable[["xarray.Dataset", Path], None], dataset: "xarray.Dataset"
+) -> None:
     unfinished: Path | None = None
     try:
         handle, name = tempfile.mkstemp(prefix=f".{place.name}.", dir=place.parent)
         unfinished = Path(name)
         os.close(handle)
-        dataset.to_netcdf(unfinished, engine="h5netcdf", encoding=packed)
+        writer(dataset, unfinished)
         with open(unfinished, "rb") as written:
             os.fsync(written.fileno())
         unfinished.chmod(0o666 & ~_umask())
@@ -149,7 +229,53 @@ def write_waveforms(
     finally:
         if unfinished is not None:
             unfinished.unlink(missing_ok=True)
-    return place
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """A kind of file: what people call it, how it begins, who writes it."""
+
+    name: str
+    start: bytes
+    writers: tuple[Callable[["xarray.Dataset", Path], None], ...]
+
+
+def _write_netcdf(dataset: "xarray.Dataset", place: Path) -> None:
+    packed = {name: {"zlib": True, "complevel": 4} for name in WAVEFORMS if name in dataset}
+    dataset.to_netcdf(place, engine="h5netcdf", encoding=packed)
+
+
+def _write_matlab(dataset: "xarray.Dataset", place: Path) -> None:
+    from camring.interfaces.waveform_tables import write_matlab
+
+    write_matlab(dataset, place)
+
+
+def _write_csv(dataset: "xarray.Dataset", place: Path) -> None:
+    from camring.interfaces.waveform_tables import write_csv
+
+    write_csv(dataset, place)
+
+
+def _write_results_csv(dataset: "xarray.Dataset", place: Path) -> None:
+    from camring.interfaces.waveform_tables import write_results_csv
+
+    write_results_csv(dataset, place)
+
+
+def _write_excel(dataset: "xarray.Dataset", place: Path) -> None:
+    from camring.interfaces.waveform_workbook import write_workbook
+
+    write_workbook(dataset, place)
+
+
+_KINDS: Mapping[str, _Kind] = {
+    ".nc": _Kind("NetCDF", b"\x89HDF\r\n\x1a\n", (_write_netcdf,)),
+    ".csv": _Kind("CSV", b"# Waveforms of", (_write_csv, _write_results_csv)),
+    ".xlsx": _Kind("XLSX", b"PK\x03\x04", (_write_excel,)),
+    ".mat": _Kind("MAT", b"MATLAB 5.0", (_write_matlab,)),
+}
+ENDINGS = tuple(_KINDS)
 
 
 def _attributes(system: "System", source: str) -> dict[str, object]:
@@ -163,29 +289,29 @@ def _attributes(system: "System", source: str) -> dict[str, object]:
         "source": f"camring {__version__}, jax {jax.__version__}",
         "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} written by camring {__version__}",
         "motor_file": source,
-        "comment": "chamber variables belong to the piston that stands at the shaft angle",
+        "comment": "chamber variables belong to the piston that stands at the shaft angle; "
+        "the angle grows the way the cylinder block turns at positive speed, anticlockwise in "
+        "the drawings of `camring export`; angle 0 is that of the motor file",
     }
 
 
-def _require_replaceable(place: Path) -> None:
+def _require_replaceable(place: Path, kind: _Kind) -> None:
     """A slip of the hand must not replace a motor file by waveforms."""
     if not place.parent.is_dir():
         raise InputError(str(place), "lies in no existing folder", "make the folder first")
-    if place.is_dir():
-        raise InputError(str(place), "is a folder", "give the name of a file, such as out.nc")
     if not place.exists():
         return
     try:
         with open(place, "rb") as file:
-            start = file.read(len(_HDF5))
+            start = file.read(len(kind.start))
     except OSError as error:
         raise InputError(
             str(place), f"cannot be read ({error.strerror})", "choose another name"
         ) from error
-    if start != _HDF5:
+    if start != kind.start:
         raise InputError(
             str(place),
-            "exists and is no NetCDF file that camring could have written",
+            f"exists and is no {kind.name} file that camring could have written",
             "give a new name, or remove that file yourself",
         )
 

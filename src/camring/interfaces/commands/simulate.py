@@ -15,7 +15,10 @@ def simulate(
     ] = False,
     waveforms: Annotated[
         Path | None,
-        typer.Option("--waveforms", help="Write one revolution to this NetCDF file."),
+        typer.Option(
+            "--waveforms",
+            help="Write one revolution and all results to this file: .nc, .csv, .xlsx or .mat.",
+        ),
     ] = None,
 ) -> None:
     """Simulate a motor at its operating points and print every result.
@@ -31,13 +34,20 @@ def simulate(
     from camring.interfaces.simulated import simulated
     from camring.interfaces.simulation_output import document, print_table
 
+    if waveforms is not None:
+        from camring.interfaces.waveform_file import require_known_ending
+
+        require_known_ending(waveforms)
     file = read_motor_file(motor)
     found = simulated(file)
     if waveforms is not None:
-        from camring.interfaces.waveform_file import write_waveforms
+        from camring.interfaces.waveform_file import write_simulation
 
-        written = write_waveforms(waveforms, file.system, found.cycles, source=file.text)
-        typer.echo(f"Wrote {written}.", err=True)
+        results = found.outcome.results
+        for written in write_simulation(
+            waveforms, file.system, found.cycles, results, source=file.text
+        ):
+            typer.echo(f"Wrote {written}.", err=True)
     if json:
         typer.echo(document(found))
     else:

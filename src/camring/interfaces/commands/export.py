@@ -1,0 +1,65 @@
+"""`camring export`: files for CAD, grinding machine, spreadsheet and workshop."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def export(
+    motor: Annotated[
+        Path, typer.Argument(help="Motor file, or folder of a study: its best motor is taken.")
+    ],
+    out: Annotated[Path, typer.Option("--out", help="Folder for the files; made if need be.")],
+    only: Annotated[
+        str | None,
+        typer.Option(
+            help="Some of ring,points,plate,sheet,step, or all; else all but step, which needs "
+            "the extra camring[step].",
+        ),
+    ] = None,
+    chord: Annotated[
+        str | None,
+        typer.Option(help='How far chords of the point table may stray; else "1 um".'),
+    ] = None,
+    port_circle: Annotated[
+        str | None,
+        typer.Option(
+            help="Radius on which the ports lie; else half the smallest pitch radius, for round "
+            "ports that at which they open as modelled."
+        ),
+    ] = None,
+    outer_radius: Annotated[
+        str | None,
+        typer.Option(help="Of the ring's body; else two roller radii beyond its inside."),
+    ] = None,
+    ring_width: Annotated[
+        str | None, typer.Option(help="Of the ring's body; else the roller's length.")
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace files of the same names.")
+    ] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
+    ] = False,
+) -> None:
+    """Write what a designer takes to CAD, grinding machine and workshop.
+
+    ring.dxf and ring.svg hold the path of the roller centre and the working
+    surface; ring_points.csv has points of both with normals and curvature;
+    valve_plate.dxf and .csv the ports with their timing; sheet.svg is an A3
+    drawing; ring.step a solid. An undercut ring is refused.
+    """
+    from camring.interfaces.export import Wishes, chosen_products
+    from camring.interfaces.export import export as write_all
+    from camring.interfaces.export.source import motor_of
+    from camring.interfaces.export.told import document, print_written
+
+    names = chosen_products(only)
+    wishes = Wishes.read(chord, port_circle, outer_radius, ring_width)
+    file = motor_of(motor)
+    written = write_all(file, out, only=names, wishes=wishes, replace=force)
+    if json:
+        typer.echo(document(file, written))
+    else:
+        print_written(file, written)
