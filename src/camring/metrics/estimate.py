@@ -13,7 +13,7 @@ from jaxtyping import Float
 from camring.geometry.contour import undercut_factor
 from camring.geometry.material import Material
 from camring.geometry.piston import Roller
-from camring.numerics.quantity import Q
+from camring.numerics.quantity import Q, real
 from camring.numerics.spline import Jet
 from camring.physics.contact import hertz_stress
 
@@ -82,14 +82,14 @@ class Duty(NamedTuple):
 
 def inner_dead_centre(sketch: Sketch) -> Jet:
     """The pitch radius where the sine cam bends outwards most, with its derivatives."""
-    bend = sketch.stroke / 2 * sketch.lobes**2
-    nothing = np.zeros_like(bend)
-    return Jet(sketch.least_radius, nothing, bend, nothing)
+    bend = real(sketch.stroke / 2 * sketch.lobes**2)
+    nothing = 0 * bend
+    return Jet(real(sketch.least_radius), nothing, bend, nothing)
 
 
 def least_undercut_factor(sketch: Sketch) -> Share:
     """`1 + kappa Rf` at the inner dead centre, its least for a sine."""
-    return np.asarray(undercut_factor(inner_dead_centre(sketch), sketch.roller_radius))
+    return np.asarray(undercut_factor(inner_dead_centre(sketch), real(sketch.roller_radius)))
 
 
 def contact_stress(sketch: Sketch, duty: Duty, steel: Material) -> Q[Numbers, "Pa"]:
@@ -97,8 +97,8 @@ def contact_stress(sketch: Sketch, duty: Duty, steel: Material) -> Q[Numbers, "P
 
     Ring and roller of one material. Infinite where the roller undercuts the ring.
     """
-    force = sketch.area * (duty.supply_pressure - duty.case_pressure)
-    roller = Roller(sketch.roller_radius, sketch.roller_length, steel)
+    force = real(sketch.area) * (duty.supply_pressure - duty.case_pressure)
+    roller = Roller(real(sketch.roller_radius), real(sketch.roller_length), steel)
     return np.asarray(hertz_stress(force, inner_dead_centre(sketch), roller, steel))
 
 
@@ -134,6 +134,21 @@ def pre_compression(sketch: Sketch, duty: Duty) -> Q[Numbers, "rad"]:
     """
     travel = sketch.dead_volume * duty.drop / duty.bulk_modulus / sketch.area
     return np.arccos(np.clip(1 - 2 * travel / sketch.stroke, -1, 1)) / sketch.lobes
+
+
+def pressure_leaked_away(sketch: Sketch, duty: Duty, shut: Q[Numbers, "rad"]) -> Q[Numbers, "Pa"]:
+    """What a chamber loses while it is shut about the inner dead centre.
+
+    Shut over `shut`, half before and half after it, the oil is pressed together and let
+    expand again; what leaked out meanwhile is missing afterwards. Pressure over a short
+    angle is a parabola, two thirds of its height on the mean. Above the truth, because
+    what has leaked no longer presses.
+    """
+    half = shut * sketch.lobes / 2
+    swept, stiffness = sketch.area * sketch.stroke, duty.bulk_modulus / sketch.dead_volume
+    height = stiffness * swept / 2 * (1 - np.cos(half))
+    mean = 2 / 3 * height + duty.return_pressure - duty.case_pressure
+    return stiffness * sketch.leakage_coefficient * mean * shut / duty.shaft_speed
 
 
 def efficiency(sketch: Sketch, duty: Duty) -> Share:

@@ -20,6 +20,8 @@ from camring.metrics.estimate import (
     inertia_pressure,
     least_undercut_factor,
     port_drop,
+    pre_compression,
+    pressure_leaked_away,
     sine_torque_ripple,
 )
 from camring.numerics.quantity import Q
@@ -80,6 +82,14 @@ def combinations() -> list[tuple[int, int]]:
         and gcd(pistons, lobes) >= rules.LEAST_DIVISOR
         and pistons // gcd(pistons, lobes) >= rules.LEAST_PHASES
     ]
+
+
+def displacements(counts: list[tuple[int, int]] | None = None) -> tuple[float, float]:
+    """The least and the greatest displacement that the bores and strokes allow, m3."""
+    cylinders = [p * n for p, n in (combinations() if counts is None else counts)]
+    short, long = rules.STROKES
+    cubed = pi / 4 * _BORES**3
+    return min(cylinders) * short * float(cubed[0]), max(cylinders) * long * float(cubed[-1])
 
 
 def duty_of(demand: Demand, return_pressure: float | np.ndarray) -> Duty:
@@ -169,7 +179,8 @@ def _judged(sketch: Sketch, demand: Demand) -> Sketches:
     pressed = inertia_pressure(sketch, duty_of(demand, 0.0)) + rules.CASE_PRESSURE
     least, _ = rules.RETURN_PRESSURES
     back = np.maximum(np.ceil((pressed + rules.RETURN_SPARE) / 1e5) * 1e5, least)
-    duty = duty_of(demand, back)
+    # Beyond what any motor may have the other numbers mean nothing; they stay finite.
+    duty = duty_of(demand, np.minimum(back, demand.pressure / 2))
     stress = contact_stress(sketch, duty, rules.STEEL)
     angle = greatest_pressure_angle(sketch)
     useful = efficiency(sketch, duty)
@@ -194,11 +205,25 @@ def _judged(sketch: Sketch, demand: Demand) -> Sketches:
         pressure_angle=angle,
         undercut_factor=least_undercut_factor(sketch),
         port_drop=port_drop(sketch, duty),
-        wall=wall_between(sketch.pistons, sketch.bore, inner),
+        wall=np.asarray(wall_between(sketch.pistons, sketch.bore, inner)),
         efficiency=useful,
         torque_ripple=ripple,
         score=score,
     )
+
+
+def shut_angle(sketch: Sketch, duty: Duty) -> float:
+    """Angle about a dead centre over which both windows are shut, rad, of one sketch.
+
+    Three quarters of full pre-compression, or the most after which leakage at the slow
+    operating point leaves the chamber above the case.
+    """
+    shares = np.linspace(0.02, rules.SHUT_SHARE, 200)
+    angles = shares * pre_compression(sketch, duty)
+    slow = duty._replace(shaft_speed=rules.SLOW * duty.shaft_speed)
+    room = duty.return_pressure - duty.case_pressure - rules.LEAK_SPARE
+    kept = pressure_leaked_away(sketch, slow, angles) <= room
+    return float(angles[max(int(np.sum(kept)) - 1, 0)])
 
 
 def shortfalls(found: Sketches, demand: Demand) -> dict[str, np.ndarray]:
@@ -210,7 +235,7 @@ def shortfalls(found: Sketches, demand: Demand) -> dict[str, np.ndarray]:
         "undercut_factor": 1 - found.undercut_factor / rules.UNDERCUT_WANTED,
         "block": rules.LEAST_WALL - found.wall / bore,
         "ports": found.port_drop
-        / (rules.PORT_DROP_LIMIT * (demand.pressure - found.return_pressure))
+        / (rules.PORT_DROP_LIMIT * np.maximum(demand.pressure - found.return_pressure, 1e5))
         - 1,
         "contact": found.return_pressure / rules.RETURN_PRESSURES[1] - 1,
         "envelope": found.outer_radius / demand.envelope - 1,
@@ -227,5 +252,4 @@ def sized(demand: Demand, counts: list[tuple[int, int]] | None = None) -> Sketch
     order = np.argsort(kept.score, kind="stable")
     pairs = np.stack([kept.sketch.pistons[order], kept.sketch.lobes[order]], axis=-1)
     _, first = np.unique(pairs, axis=0, return_index=True)
-    best = kept.taken(order[np.sort(first)])
-    return best
+    return kept.taken(order[np.sort(first)])

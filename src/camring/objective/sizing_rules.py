@@ -9,9 +9,10 @@ assumptions in the class of a machine and no maker's data.
 from math import pi
 
 from camring.geometry.material import Material
+from camring.numerics.quantity import real
 
 # The ring and the rollers.
-STEEL = Material(206e9, 0.3)
+STEEL = Material(real(206e9), real(0.3))
 ROLLER_RADIUS = 0.42  # bores; a roller of 0.84 bores lies in the piston's head with a rim
 ROLLER_LENGTHS = (0.95, 1.1, 1.25)  # bores; the shortest that carries the load is the cheapest
 RING_WALL = 0.6  # bores of ring and housing outside the deepest place; assumed
@@ -51,7 +52,10 @@ LEAKAGE_PER_AREA = 2.2e-10  # m/(s Pa)
 
 # Both directions of rotation alike: windows stand symmetric about the dead centres, shut
 # for three quarters of what full pre-compression takes. As the examples (0.73 to 0.76).
+# Less where so much leaks away meanwhile, at a slow speed, that rollers would lift off.
 SHUT_SHARE = 0.75
+SLOW = 0.2  # of rated speed: the second operating point
+LEAK_SPARE = 1e5  # Pa above the case that are left then
 RAMP = 0.3
 
 # Return pressure keeps the rollers on the ring on their way in, with this to spare.

@@ -6,7 +6,7 @@ import numpy as np
 
 from camring.interfaces.errors import InputError
 from camring.objective import sizing_rules as rules
-from camring.objective.sizing import Demand, Sketches, candidates, shortfalls
+from camring.objective.sizing import Demand, Sketches, candidates, displacements, shortfalls
 
 # Asked in this order: what a user can change with least regret comes first.
 _ASKED = ("envelope", "contact_stress", "contact", "ports", "pressure_angle", "block")
@@ -35,12 +35,7 @@ def refusal(demand: Demand, counts: list[tuple[int, int]] | None) -> InputError:
 
 
 def _no_bore(demand: Demand, counts: list[tuple[int, int]] | None) -> InputError:
-    spans = []
-    for litres in np.geomspace(1e-6, 1.0, 1201):
-        trial = Demand(float(litres), demand.pressure, demand.shaft_speed)
-        if len(candidates(trial, counts)):
-            spans.append(litres * 1e3)
-    low, high = spans[0], spans[-1]
+    low, high = (1e3 * each for each in displacements(counts))
     return InputError(
         "--displacement",
         f"is {demand.displacement * 1e3:.4g} L/rev, but bores of 12 to 130 mm and strokes of "

@@ -48,7 +48,7 @@ def library_text(name: str) -> str:
 def print_library(out: Console) -> None:
     """One line for each motor: size, duty, counts and class."""
     table = Table("Name", box=None, pad_edge=False)
-    for heading in ("L/rev", "bar", "rpm", "Pistons\nx lobes"):
+    for heading in ("L/rev", "Up to\nbar", "Up to\nrpm", "Pistons\nx lobes"):
         table.add_column(heading, justify="right")
     table.add_column("In the class of")
     for name, text in library().items():

@@ -7,7 +7,7 @@ import numpy as np
 from camring.geometry.profiles import control_values, sine
 from camring.metrics.estimate import Sketch, pre_compression
 from camring.objective import sizing_rules as rules
-from camring.objective.sizing import Demand, Sketches, duty_of
+from camring.objective.sizing import Demand, Sketches, duty_of, shut_angle
 
 _TEXT = """\
 # {name}: a sine cam.
@@ -44,8 +44,8 @@ length = "{roller_length:.1f} mm"
 elastic_modulus = "206 GPa"
 poisson_ratio = 0.3
 
-# Alike for both directions of rotation; shut about each dead centre for three quarters of
-# the angle that full pre-compression takes.
+# Alike for both directions of rotation; shut about each dead centre over {shut:.2f} deg, where
+# full pre-compression takes {full:.2f} deg.{slow_says}
 [motor.valve_plate]
 port_area = "{port_area} mm^2"                # loses {drop:.2g} bar at the greatest piston speed
 discharge_coefficient = 0.65
@@ -104,8 +104,11 @@ budget = 300
 seed = 0
 """
 
-_MODES = (8, 9)
-_SLOW = 0.2  # of rated speed: the second operating point
+_SLOW_SAYS = (
+    " Over more of it, so much would leak away at the\n"
+    "# slow operating point that the rollers would lift off."
+)
+_MOST_MODES = 9  # of a lobe; more only wrinkle the ring
 
 
 def control_count(phases: int) -> int:
@@ -127,7 +130,8 @@ def sized_text(found: Sketches, place: int, demand: Demand) -> str:
     duty = duty_of(demand, one.return_pressure[0])
     phases = int(sketch.phases)
     pitch = 2 * pi / int(sketch.lobes)
-    shut = rules.SHUT_SHARE * float(pre_compression(sketch, duty))
+    shut = shut_angle(sketch, duty)
+    full = float(pre_compression(sketch, duty))
     litres, bar = demand.displacement * 1e3, demand.pressure / 1e5
     rpm = demand.shaft_speed * 30 / pi
     radii = _radii(sketch, phases)
@@ -143,7 +147,7 @@ def sized_text(found: Sketches, place: int, demand: Demand) -> str:
             displacement=litres,
             pressure=bar,
             speed=rpm,
-            slow=_SLOW * rpm,
+            slow=rules.SLOW * rpm,
             envelope=(
                 f", outer radius {1e3 * demand.envelope:.4g} mm"
                 if np.isfinite(demand.envelope)
@@ -166,12 +170,15 @@ def sized_text(found: Sketches, place: int, demand: Demand) -> str:
             roller_radius=1e3 * sketch.roller_radius,
             roller_length=1e3 * sketch.roller_length,
             port_area=_short(1e6 * sketch.port_area),
+            shut=degrees(shut),
+            full=degrees(full),
+            slow_says=_SLOW_SAYS if shut < 0.99 * rules.SHUT_SHARE * full else "",
             drop=one.port_drop[0] / 1e5,
             width=half - degrees(shut),
-            narrow=half - 2 * degrees(shut),
+            narrow=half - 1.5 * degrees(full),
             wide=half,
-            shift_low=-degrees(shut),
-            shift_high=degrees(shut) / 2,
+            shift_low=-0.75 * degrees(full),
+            shift_high=0.4 * degrees(full),
             ramp=rules.RAMP,
             back=one.return_pressure[0] / 1e5,
             case=rules.CASE_PRESSURE / 1e5,
@@ -182,7 +189,7 @@ def sized_text(found: Sketches, place: int, demand: Demand) -> str:
             undercut_limit=rules.UNDERCUT_LIMIT,
             low=0.99 * litres * 1e3,
             high=1.01 * litres * 1e3,
-            modes=_MODES[control_count(phases) > 16],
+            modes=min(control_count(phases) // 2, _MOST_MODES),
         )
     )
 
