@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from camring.geometry.block import guided_length, meeting_radius, wall_between
 from camring.interfaces.beside import scale_of
 from camring.interfaces.compiled import assess, cycles, summarise_compiled
 from camring.interfaces.config import MotorFile
+from camring.interfaces.crowding import crowded
 from camring.interfaces.evaluator import outcome_of
 from camring.interfaces.record import Outcome
 from camring.metrics.error_estimate import error_estimate
@@ -70,7 +70,10 @@ class Simulated:
                     f"Supply and return windows overlap by {-degrees(gap):.3g} deg at the "
                     f"{side} dead centre: the ports short-circuit there."
                 )
-        found += _about_block(self)
+        if self.outcome.results:
+            lowest = self.outcome.results[0]["min_lift"]
+            inner = float(self.cycles[0].reference_radius) + lowest
+            found += crowded(self.file.system.motor, inner)
         # An undercut is the same at every operating point.
         return list(dict.fromkeys(found))
 
@@ -131,37 +134,6 @@ def _relative(name: str, errors: dict[str, float], results: Any) -> float:
         scale = max(scale, abs(results["ideal_torque"] / results["stroke"]))
     error = errors[name] / scale if scale > 0 else errors[name]
     return error if math.isfinite(error) else math.inf
-
-
-def _about_block(found: Simulated) -> list[str]:
-    """Pistons and rollers that run into their neighbours where they stand furthest in."""
-    motor = found.file.system.motor
-    if not found.outcome.results:
-        return []
-    inner = float(found.cycles[0].reference_radius) + found.outcome.results[0]["min_lift"]
-    pistons, bore = motor.pistons, float(motor.piston.bore)
-    wanted = bore if motor.gap is None else float(motor.gap.length)
-    whose = "as long as its bore, so that it does not tilt" if motor.gap is None else "of that gap"
-    said = []
-    room = float(guided_length(pistons, bore, inner))
-    if room < wanted:
-        left = f"leaves {1e3 * room:.3g} mm" if room > 0 else "leaves nothing"
-        said.append(
-            f"The pistons do not fit round the block: {pistons} bores of {1e3 * bore:.4g} mm run "
-            f"into each other at a radius of {1e3 * float(meeting_radius(pistons, bore)):.4g} mm, "
-            f"which {left} of piston below the roller's centre at {1e3 * inner:.4g} mm, where a "
-            f"piston {whose} takes {1e3 * wanted:.3g} mm; take fewer pistons, a smaller bore or a "
-            "larger ring."
-        )
-    across = 2 * float(motor.roller.radius)
-    apart = float(wall_between(pistons, across, inner))
-    if apart < 0:
-        said.append(
-            f"The rollers run into each other: {pistons} rollers {1e3 * across:.4g} mm across "
-            f"overlap by {-1e3 * apart:.3g} mm at the inner dead centre; take fewer, smaller "
-            "rollers or a larger ring."
-        )
-    return said
 
 
 def _about(results: Any, file: MotorFile) -> list[str]:
