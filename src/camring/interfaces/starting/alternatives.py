@@ -28,13 +28,13 @@ def print_alternatives(found: Sketches, demand: Demand, out: Console, chosen: in
         "Pistons\nx lobes",
         "Bore\nmm",
         "Stroke\nmm",
-        "Outer\nradius, mm",
+        "Outer\nmm",
         "Reached\nL/rev",
         "Stress\nGPa",
         "Angle\ndeg",
         "Order",
         "Ripple\n%",
-        "Efficiency\n%",
+        "Effic.\n%",
     ):
         table.add_column(heading, justify="right")
     for place in range(min(len(found), MOST_ROWS)):
@@ -43,8 +43,9 @@ def print_alternatives(found: Sketches, demand: Demand, out: Console, chosen: in
     if len(found) > MOST_ROWS:
         out.print(f"... and {len(found) - MOST_ROWS} more; --counts 10x8 asks for one of them.")
     out.print(
-        "Closed forms for a sine cam: greatest contact stress and pressure angle, the first "
-        "torque order\nof the shaft, geometric ripple (one-sided), efficiency at rated speed."
+        "Outer radius; then closed forms for a sine cam: greatest contact stress and pressure "
+        "angle, first torque order of the shaft, geometric ripple (one-sided), efficiency at "
+        "rated speed."
     )
 
 
