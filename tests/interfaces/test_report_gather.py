@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +63,30 @@ def study(tmp_path_factory) -> Path:
 @pytest.fixture(scope="module")
 def data(study):
     return gather(study)
+
+
+def test_where_no_design_keeps_the_limits_the_closest_stands_beside_the_given(study, tmp_path):
+    opened = StudyFolder.open(study, write=False)
+    try:
+        records = opened.store.records()
+    finally:
+        opened.close()
+    folder = tmp_path / "infeasible"
+    opened = StudyFolder.create(folder, EXAMPLE.read_bytes(), FACTS)
+    try:
+        for record, excess in zip(records[:2], (0.5, 0.2), strict=True):
+            broken = {**record.outcome.constraints, "max_pressure": excess}
+            outcome = replace(record.outcome, constraints=broken)
+            opened.store.append(replace(record, outcome=outcome), {})
+    finally:
+        opened.close()
+    data = gather(folder)
+    assert [design.label for design in data.designs] == ["given", "closest"]
+    assert data.verdict is not None
+    assert not data.verdict.validated
+    assert data.search is not None
+    assert data.search.best is None
+    assert "Closest" in render(data)
 
 
 def test_before_and_after_are_the_given_and_the_best_motor(data):

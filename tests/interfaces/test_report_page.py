@@ -16,6 +16,7 @@ from camring.interfaces.report.figure import around
 from camring.interfaces.report.page import render
 from camring.interfaces.report.pictures.cam import pitch_curve, working_surface
 from camring.interfaces.report.pictures.search import pareto
+from camring.interfaces.report.quantities import QUANTITIES
 
 VOID = {"meta", "link", "input", "br", "hr", "img"}
 
@@ -161,6 +162,16 @@ def test_everything_a_reviewer_asks_for_is_there(page):
         "seed",
     ):
         assert wanted in text, wanted
+
+
+def test_the_tiles_tell_of_every_operating_point(study, page):
+    tiles = page[page.index('class="keys"') : page.index("</dl>")]
+    assert len(study.designs[-1].results) > 1
+    for result in study.designs[-1].results:
+        assert result.duty.name in tiles
+    ripple = [design.results[1].metrics["torque_ripple"] for design in study.designs]
+    first, last = (QUANTITIES["torque_ripple"].written(value) for value in ripple)
+    assert f"{first} → {last} %" in tiles
 
 
 def test_text_from_files_is_shown_and_never_obeyed(page):

@@ -1,11 +1,10 @@
 """The last steps of a study: best motor, validation, report."""
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 
 from camring.interfaces.config import MotorFile, parse_motor_file
 from camring.interfaces.finished import Finished
-from camring.interfaces.record import Record, best_of
+from camring.interfaces.record import Record, best_of, closest_of
 from camring.interfaces.report import write_report
 from camring.interfaces.study_folder import StudyFolder, write_safely
 from camring.interfaces.validation import BEST, GIVEN, Check, Validation, validate
@@ -52,8 +51,7 @@ def finish(
 
 def _nothing_found(records: Sequence[Record]) -> Validation:
     """No design keeps every limit: which one comes closest, and what it breaks."""
-    working = [record for record in records if not record.failed]
-    closest = min(working, key=_violation, default=None)
+    closest = closest_of(records)
     if closest is None:
         return Validation(-1, False, "Not validated: every evaluation failed.", [], {})
     worst = max(closest.outcome.constraints, key=lambda name: closest.outcome.constraints[name])
@@ -67,7 +65,3 @@ def _nothing_found(records: Sequence[Record]) -> Validation:
         for name, value in closest.outcome.constraints.items()
     ]
     return Validation(closest.trial, False, sentence, checks, {})
-
-
-def _violation(record: Record) -> float:
-    return math.fsum(max(value, 0.0) for value in record.outcome.constraints.values())

@@ -105,3 +105,13 @@ def best_of(records: Sequence[Record]) -> Record | None:
         key=lambda record: (not record.within(SAFETY), record.outcome.objective),
         default=None,
     )
+
+
+def closest_of(records: Sequence[Record]) -> Record | None:
+    """The working record that breaks its limits least in sum; None when every one failed."""
+    working = [record for record in records if not record.failed]
+    return min(working, key=_violation, default=None)
+
+
+def _violation(record: Record) -> float:
+    return math.fsum(max(value, 0.0) for value in record.outcome.constraints.values())

@@ -11,6 +11,7 @@ import numpy as np
 from camring.interfaces.beside import scale_of
 from camring.interfaces.compiled import assess, cycles, summarise_compiled
 from camring.interfaces.config import MotorFile
+from camring.interfaces.crowding import crowded
 from camring.interfaces.evaluator import outcome_of
 from camring.interfaces.record import Outcome
 from camring.metrics.error_estimate import error_estimate
@@ -69,6 +70,10 @@ class Simulated:
                     f"Supply and return windows overlap by {-degrees(gap):.3g} deg at the "
                     f"{side} dead centre: the ports short-circuit there."
                 )
+        if self.outcome.results:
+            lowest = self.outcome.results[0]["min_lift"]
+            inner = float(self.cycles[0].reference_radius) + lowest
+            found += crowded(self.file.system.motor, inner)
         # An undercut is the same at every operating point.
         return list(dict.fromkeys(found))
 

@@ -3,6 +3,7 @@
 from typing import Annotated as Key
 
 from camring.interfaces.config.entries import Count, Number, Word, band
+from camring.interfaces.config.per_turn import PerTurn
 from camring.interfaces.config.table import FULL_TURN, Table, pressure_entry
 
 
@@ -63,7 +64,7 @@ class ConstraintsTable(Table):
     min_mean_torque: Key[float | None, _limit("the mean torque", '"1.5 kN*m"', "N*m", -1e9)] = None
     displacement: Key[
         tuple[float, float] | None,
-        band(_limit("the volume per revolution", '"400 cm^3"', "m^3", 0.0, 1e3)),
+        band(PerTurn("the limit of the volume per revolution", '"400 cm^3"', unit="m^3", high=1e3)),
     ] = None
     stroke: Key[
         tuple[float, float] | None, band(_limit("the stroke", '"12 mm"', "m", 0.0, 100.0))

@@ -9,7 +9,7 @@ import numpy as np
 from camring.interfaces.config import MotorFile, parse_motor_file, read_motor_file
 from camring.interfaces.config.document import printable
 from camring.interfaces.errors import InputError
-from camring.interfaces.record import Record, best_of
+from camring.interfaces.record import Record, best_of, closest_of
 from camring.interfaces.report.coordinates import coordinates_of, variables_of
 from camring.interfaces.report.data import Design, ReportData, Verdict
 from camring.interfaces.report.limits import constraints_of
@@ -44,16 +44,22 @@ def gather(folder: str | Path) -> ReportData:
     given = read_motor_file(study.given_path)
     best_record = best_of(records)
     best = _best_motor(study, given, best_record)
+    last, label = best, "best"
+    if best is None:
+        best_record, last = _closest(given, records), None
+        label = "closest"
+        if best_record is not None:
+            last = parse_motor_file(given.with_design(best_record.point.tolist()), study.best_path)
     # The validation has looked at the errors already, finer and with another solver.
-    found = [simulated(each, estimate=False) for each in (given, best) if each is not None]
+    found = [simulated(each, estimate=False) for each in (given, last) if each is not None]
     designs = tuple(
-        design_of(label, each) for label, each in zip(("given", "best"), found, strict=False)
+        design_of(label, each) for label, each in zip(("given", label), found, strict=False)
     )
     system = given.system
     weights = [float(point.weight) for point in system.operating_points]
     space = given.design_space
     points: list[np.ndarray] = [] if space is None else [space.locate(system)]
-    if best_record is not None and best is not None:
+    if best_record is not None and last is not None:
         points.append(best_record.point)
     return ReportData(
         title=_title(given),
@@ -70,7 +76,7 @@ def gather(folder: str | Path) -> ReportData:
             memory,
             stopped=facts.get("stopped", ""),
             given=_given_trial(records, points),
-            best=None if best_record is None else best_record.trial,
+            best=None if best is None or best_record is None else best_record.trial,
             notes=_notes(records, facts),
         ),
         sensitivities=sensitivities_of(given, points[-1]) if len(points) == 2 else (),
@@ -164,6 +170,15 @@ def _best_motor(
     if best_record is None or given.design_space is None:
         return None
     return parse_motor_file(given.with_design(best_record.point.tolist()), study.best_path)
+
+
+def _closest(given: MotorFile, records: Sequence[Record]) -> Record | None:
+    """Where no design keeps every limit: the one nearest to it, unless that is the given one."""
+    record = closest_of(records)
+    if record is None or given.design_space is None:
+        return None
+    start = given.design_space.locate(given.system)
+    return None if np.allclose(record.point, start, rtol=0, atol=1e-9) else record
 
 
 def _verdict(study: StudyFolder, best: MotorFile | None, weights: Sequence[float]) -> Verdict:

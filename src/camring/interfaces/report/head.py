@@ -9,6 +9,7 @@ from camring.interfaces.report.svg import element, escape
 
 __all__ = ["head"]
 
+MOST_OTHERS = 3  # operating points beside the first that a tile has room for
 _KEYS = ("torque_ripple", "efficiency", "max_contact_stress", "mean_torque")
 
 
@@ -52,7 +53,7 @@ def _warnings(data: ReportData) -> str:
 
 
 def _keys(data: ReportData) -> str:
-    """Four results at the first operating point; limits count at the worst point."""
+    """Four results, large at the first operating point; limits count at the worst point."""
     first = [design.results[0] for design in data.designs]
     keys = []
     for name in _KEYS:
@@ -74,7 +75,7 @@ def _keys(data: ReportData) -> str:
             element(
                 "div",
                 element("dt", escape(quantity.label)),
-                element("dd", shown, was),
+                element("dd", shown, was, *_elsewhere(data, name)),
                 class_="key",
             )
         )
@@ -96,5 +97,24 @@ def _keys(data: ReportData) -> str:
             )
         )
     point = first[-1].duty.name
-    caption = element("p", escape(f"At the first operating point, {point}:"), class_="lead small")
+    said = f"At the first operating point, {point}:"
+    if others := len(data.designs[-1].results) - 1:
+        small = "the other" if others == 1 else f"the next {min(others, MOST_OTHERS)}"
+        said = f"At the first operating point, {point}, and small at {small}:"
+    caption = element("p", escape(said), class_="lead small")
     return caption + element("dl", *keys, class_="keys", aria_label=f"Key figures at {point}")
+
+
+def _elsewhere(data: ReportData, name: str) -> list[str]:
+    """A line for each further operating point: what it was and what it is."""
+    quantity = QUANTITIES[name]
+    lines = []
+    for place, result in enumerate(data.designs[-1].results[1 : 1 + MOST_OTHERS], start=1):
+        numbers = [design.results[place].metrics.get(name) for design in data.designs]
+        if any(number is None for number in numbers):
+            continue
+        written = [quantity.written(float(number)) for number in numbers if number is not None]
+        path = " → ".join(written) if len(written) == 2 else written[-1]
+        text = f"{result.duty.name}: {path} {quantity.unit}".rstrip()
+        lines.append(element("span", escape(text), class_="was other"))
+    return lines
