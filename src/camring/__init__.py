@@ -11,7 +11,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from camring.interfaces.compiled import evaluate, simulate, summarise, waveforms
+    from camring.interfaces.compiled import (
+        evaluate,
+        simulate,
+        simulate_to,
+        summarise,
+        waveforms,
+    )
     from camring.interfaces.config import MotorFile, read_motor_file
     from camring.interfaces.errors import InputError
     from camring.interfaces.optimisation import optimise, resume
@@ -49,6 +55,7 @@ _HOMES = {
     "read_motor_file": "camring.interfaces.config",
     "resume": "camring.interfaces.optimisation",
     "simulate": "camring.interfaces.compiled",
+    "simulate_to": "camring.interfaces.compiled",
     "summarise": "camring.interfaces.compiled",
     "waveforms": "camring.interfaces.compiled",
 }
@@ -74,6 +81,7 @@ __all__ = [
     "read_motor_file",
     "resume",
     "simulate",
+    "simulate_to",
     "summarise",
     "waveforms",
 ]
