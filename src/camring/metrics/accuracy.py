@@ -57,7 +57,7 @@ class Accurate(NamedTuple):
     @property
     def reached(self) -> bool:
         """Whether every result is estimated to be as accurate as was asked."""
-        return self.largest_error <= self.accuracy
+        return _sound(self.cycle) and self.largest_error <= self.accuracy
 
 
 def climb(
@@ -65,7 +65,7 @@ def climb(
     accuracy: float = 1e-5,
     ladder: tuple[Resolution, ...] | None = None,
 ) -> Accurate:
-    """The first rung whose estimated error is within the accuracy, else the last.
+    """The first rung whose estimated error is within the accuracy, else the last sound one.
 
     Parameters
     ----------
@@ -91,8 +91,13 @@ def climb(
             break
         seen = look(finer)
         error = error_estimate(seen.metrics, found.metrics, CLIMBED_FACTOR, CLIMBED_FLOOR)
-        found = Accurate(*seen, error, finer, accuracy)
+        if not (_sound(found.cycle) and not _sound(seen.cycle)):
+            found = Accurate(*seen, error, finer, accuracy)
     return found
+
+
+def _sound(cycle: Cycle) -> bool:
+    return int(cycle.verdict.code) == Fault.NONE
 
 
 def _curable(cycle: Cycle) -> bool:

@@ -17,7 +17,7 @@ from jaxtyping import Array, Complex, Float
 from camring.numerics.mesh import Mesh
 from camring.numerics.quadrature import gauss_legendre
 
-SAMPLES_PER_HARMONIC = 12
+SAMPLES_PER_HARMONIC = 20
 INTEGRATIONS = 4
 """Five would lose the six hundredth order of a free ring to rounding."""
 

@@ -29,30 +29,8 @@ class Resolution:
 
     @classmethod
     def ladder(cls) -> tuple["Resolution", ...]:
-        """What `simulate_to` tries in turn; each has a sixteenth of the error before."""
+        """What `simulate_to` tries in turn; each doubles the elements."""
         return cls(), cls(elements=640), cls(elements=1280)
-
-    @classmethod
-    def for_accuracy(cls, accuracy: float) -> "Resolution":
-        """The cheapest at which sound motors are that accurate, relative on every result.
-
-        Measured on random motors (docs/notes/verification.md), not promised: to have
-        the motor at hand looked at until it is, ask `simulate_to`.
-
-        Raises
-        ------
-        ValueError
-            When no rung of the ladder is known to reach it.
-        """
-        for resolution, reached in zip(
-            (cls.coarse(), *cls.ladder()), (1e-4, 1e-5, 1e-6, 2e-7), strict=True
-        ):
-            if accuracy >= reached:
-                return resolution
-        raise ValueError(
-            f"accuracy = {accuracy:g} is finer than 2e-07, the best that is known of sound "
-            "motors; ask for more elements, Resolution(elements=2000)"
-        )
 
     def second_look(self) -> "Resolution":
         """The coarser mesh an error estimate compares with.
