@@ -51,7 +51,7 @@ def test_a_motor_that_is_accurate_enough_costs_two_looks(seen):
     assert asked == [320, 224]
 
 
-@pytest.mark.parametrize(("error", "rung"), [(1e-5, 640), (1e-4, 1280)])
+@pytest.mark.parametrize(("error", "rung"), [(5e-6, 640), (5e-5, 1280)])
 def test_it_climbs_until_the_accuracy_is_reached_and_no_further(seen, error, rung):
     look, _ = eyes(seen, error)
     found = climb(look, 1e-5)
