@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 FAILED = 1
-FINEST, COARSEST = 2e-6, 0.01
+FINEST, COARSEST = 3e-6, 0.01
 
 
 def simulate(
