@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from camring.interfaces import plots
-    from camring.interfaces.compiled import evaluate, simulate, summarise, waveforms
+    from camring.interfaces.compiled import (
+        evaluate,
+        simulate,
+        simulate_to,
+        summarise,
+        waveforms,
+    )
     from camring.interfaces.config import MotorFile, read_motor_file
     from camring.interfaces.errors import InputError
     from camring.interfaces.operating_map import operating_map
@@ -53,6 +59,7 @@ _HOMES = {
     "read_motor_file": "camring.interfaces.config",
     "resume": "camring.interfaces.optimisation",
     "simulate": "camring.interfaces.compiled",
+    "simulate_to": "camring.interfaces.compiled",
     "summarise": "camring.interfaces.compiled",
     "sweep": "camring.interfaces.sweep",
     "waveforms": "camring.interfaces.compiled",
@@ -81,6 +88,7 @@ __all__ = [
     "read_motor_file",
     "resume",
     "simulate",
+    "simulate_to",
     "summarise",
     "sweep",
     "waveforms",

@@ -66,7 +66,7 @@ def test_a_square_wave_needs_no_fine_elements():
 
 
 @pytest.mark.parametrize("spike", [1e-3, 1e-6])
-def test_what_aliases_is_damped_threefold(spike):
+def test_what_aliases_is_damped_fourfold(spike):
     """A spike has a flat spectrum, the worst there is; its hundredth order is still right."""
     width = np.array([0.4, spike, 0.6 - spike]) * PERIOD
     where = Mesh(jnp.asarray(np.cumsum(width) - width), jnp.asarray(width), jnp.zeros(3, bool))

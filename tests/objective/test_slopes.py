@@ -17,6 +17,8 @@ from camring.physics.system import System
 
 STEP = 2e-3  # of the unit box
 LEAST_SCALE = 0.1  # constraints are counted in their limits; a slope of nil is judged by this
+OF_PRESSURE = ("min_pressure", "max_pressure", "min_contact_force", "max_contact_stress")
+"""Their differences are noisy: each simulation lays its mesh anew."""
 apply = eqx.filter_jit(DesignSpace.apply)
 
 
@@ -50,10 +52,10 @@ def differences(space, system, goal, point, first_step=STEP):
 
 
 def test_at_random_designs_of_a_motor_file():
-    """Extremes are found by parabolas between samples, so their slopes are less exact."""
     motor_file = parse_motor_file(template("sine"))
     space, system, goal = motor_file.design_space, motor_file.system, motor_file.goal
-    allowed = np.where(np.arange(1 + len(goal.constraints.names())) == 0, 1e-6, 1e-4)[:, None]
+    names = ("objective", *goal.constraints.names())
+    allowed = np.array([1e-4 if name in OF_PRESSURE else 1e-6 for name in names])[:, None]
     random = np.random.default_rng(4)
     for point in random.uniform(0.1, 0.9, (4, space.dimension)):
         found = exact(space, system, goal, point)
@@ -63,7 +65,7 @@ def test_at_random_designs_of_a_motor_file():
         assert np.all(smooth[0])
         assert np.mean(smooth) > 0.9
         error = np.where(smooth, np.abs(found - expected), 0) / scale
-        for name, worst in zip(("objective", *goal.constraints.names()), error.max(1), strict=True):
+        for name, worst in zip(names, error.max(1), strict=True):
             print(f"{name}: {worst:.0e}")
         assert np.all(error < allowed)
 

@@ -11,6 +11,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from camring.metrics import summary
+from camring.metrics.accuracy import Accurate, Look, climb
 from camring.metrics.summary import Metrics
 from camring.numerics.quantity import ArrayLike
 from camring.objective.design_space import DesignSpace
@@ -26,6 +27,9 @@ from camring.objective.slopes import (
 from camring.physics import cycle
 from camring.physics import waveforms as sampling
 from camring.physics.cycle import Cycle
+from camring.physics.fluid import AbstractFluid
+from camring.physics.motor import Motor
+from camring.physics.operating_point import OperatingPoint
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
@@ -43,6 +47,33 @@ def cycles(system: System, resolution: Resolution | None = None) -> tuple[Cycle,
         simulate_compiled(system.motor, system.fluid, point, resolution)
         for point in system.operating_points
     )
+
+
+def simulate_to(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    accuracy: float = 1e-5,
+    highest_order: int = 600,
+) -> Accurate:
+    """The cycle and its results, looked at finely enough that each is within an accuracy.
+
+    Climbs `Resolution.ladder()`: an ordinary motor stays on its first rung for 1e-5.
+    Whether the accuracy was reached is in `reached`; see `metrics.accuracy`.
+
+    Parameters
+    ----------
+    accuracy
+        Estimated error allowed in each result of model.md section 10, relative.
+    highest_order
+        Of the sums in ripples, counted per revolution.
+    """
+
+    def look(resolution: Resolution) -> Look:
+        found = simulate_compiled(motor, fluid, point, resolution)
+        return Look(found, summarise_compiled(found, highest_order))
+
+    return climb(look, accuracy)
 
 
 @dataclass(frozen=True, eq=False)

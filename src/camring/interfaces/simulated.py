@@ -1,28 +1,30 @@
 """The motor of a file, simulated and judged: what `simulate` and `check` print."""
 
-import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from camring.interfaces.beside import scale_of
-from camring.interfaces.compiled import assess, cycles, summarise_compiled
+from camring.interfaces.compiled import (
+    Solved,
+    judge_solved,
+    simulate_compiled,
+    solve,
+    summarise_compiled,
+)
 from camring.interfaces.config import MotorFile
 from camring.interfaces.crowding import crowded
 from camring.interfaces.evaluator import outcome_of
 from camring.interfaces.record import Outcome
-from camring.metrics.error_estimate import error_estimate
+from camring.metrics.accuracy import Accurate, Look, climb
 from camring.metrics.summary import Metrics
 from camring.metrics.timing import Timing, port_timing
+from camring.physics.cycle import Cycle
 from camring.physics.resolution import Resolution
 
-if TYPE_CHECKING:
-    from camring.physics.cycle import Cycle
-
-_NO_RESULTS = ("power_residual",)
+ACCURACY = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,20 +39,21 @@ class Simulated:
         One for each operating point.
     errors
         Estimated absolute error of each result, SI, for each operating point.
+    climbed
+        For each operating point the rung on which the wanted accuracy was found, or
+        the last; empty where no error was estimated.
     """
 
     file: MotorFile
     outcome: Outcome
-    cycles: tuple["Cycle", ...]
-    errors: tuple[dict[str, float], ...]
+    cycles: tuple[Cycle, ...]
+    errors: tuple[dict[str, float], ...] = ()
+    climbed: tuple[Accurate, ...] = ()
 
     @property
     def numerical_error(self) -> tuple[float, ...]:
         """For each operating point the largest error of any result, relative."""
-        return tuple(
-            max(_relative(name, errors, results) for name in errors if name not in _NO_RESULTS)
-            for errors, results in zip(self.errors, self.outcome.results, strict=True)
-        )
+        return tuple(each.largest_error for each in self.climbed)
 
     @property
     def broken(self) -> dict[str, float]:
@@ -64,6 +67,8 @@ class Simulated:
         for place, results in enumerate(self.outcome.results):
             where = f" at operating point {place + 1}" if several else ""
             found += [sentence.format(where) for sentence in _about(results, self.file)]
+            if self.climbed and not self.outcome.failure:
+                found += [each.format(where) for each in _short_of(self.climbed[place])]
         for gap, side in zip(_gaps(timing_of(self.file)), ("inner", "outer"), strict=True):
             if gap < -1e-9:
                 found.append(
@@ -78,40 +83,66 @@ class Simulated:
         return list(dict.fromkeys(found))
 
 
-def simulated(file: MotorFile, *, estimate: bool = True) -> Simulated:
+def simulated(file: MotorFile, *, estimate: bool = True, accuracy: float = ACCURACY) -> Simulated:
     """Simulate a motor at every operating point and judge it by its constraints.
 
     Parameters
     ----------
     estimate
-        Whether to look a second time at a coarser resolution for the error.
+        Whether to look a second time at a coarser resolution for the error, and more
+        finely where it is larger than wanted.
+    accuracy
+        Wanted of each result, relative.
     """
-    system, goal, resolution = file.system, file.goal, Resolution()
+    system, goal = file.system, file.goal
+    if not estimate:
+        return _judged(file, solve(system, goal))
     # Compiling both programs is nearly all the work of a first run; two threads share it.
     helper = ThreadPoolExecutor(max_workers=1)
+    second = Resolution().second_look()
+    coarser = helper.submit(solve, system, goal, second)
     try:
-        second = helper.submit(_results, file, resolution.second_look()) if estimate else None
-        found = cycles(system, resolution)
-        outcome = outcome_of(assess(system, goal, resolution))
-        if all(int(cycle.verdict.code) == 0 for cycle in found):
-            # An undercut's infinite stress spoils the objective, not the results.
-            outcome = replace(outcome, failure=None)
-        errors: tuple[dict[str, float], ...] = ()
-        if second is not None:
-            pairs = zip(_results(file, resolution), second.result(), strict=True)
-            errors = tuple(_plain(error_estimate(*pair)) for pair in pairs)
+        climbed = []
+        for place, point in enumerate(system.operating_points):
+
+            def look(resolution: Resolution, place: int = place, at: Any = point) -> Look:
+                if resolution == second:
+                    found = coarser.result()
+                    return Look(found.cycles[place], found.metrics[place])
+                cycle = simulate_compiled(system.motor, system.fluid, at, resolution)
+                return Look(cycle, summarise_compiled(cycle, goal.harmonics))
+
+            climbed.append(climb(look, accuracy))
     finally:
         helper.shutdown(wait=False, cancel_futures=True)
-    return Simulated(file, outcome, found, errors)
+    cycles = tuple(each.cycle for each in climbed)
+    found = _judged(file, Solved(system, cycles, tuple(each.metrics for each in climbed)))
+    errors = tuple(_plain(each.error) for each in climbed)
+    return replace(found, errors=errors, climbed=tuple(climbed))
 
 
-def _results(file: MotorFile, resolution: Resolution) -> list[Metrics]:
-    found = cycles(file.system, resolution)
-    return [summarise_compiled(cycle, file.goal.harmonics) for cycle in found]
+def _judged(file: MotorFile, solved: Solved) -> Simulated:
+    outcome = outcome_of(judge_solved(solved, file.goal))
+    if all(int(cycle.verdict.code) == 0 for cycle in solved.cycles):
+        # An undercut's infinite stress spoils the objective, not the results.
+        outcome = replace(outcome, failure=None)
+    return Simulated(file, outcome, solved.cycles)
 
 
 def _plain(metrics: Metrics) -> dict[str, float]:
     return {name: float(value) for name, value in vars(metrics).items()}
+
+
+def _short_of(climbed: Accurate) -> list[str]:
+    """What to say where the ladder ended before the accuracy, with a place for the point."""
+    if climbed.reached:
+        return []
+    return [
+        f"An accuracy of {climbed.accuracy:g} was not reached{{}}: the error of "
+        f"{climbed.worst_result.replace('_', ' ')} is estimated at {climbed.largest_error:.1e} "
+        f"with {climbed.resolution.elements} elements a lobe, the finest mesh; see `errors` in "
+        "--json for every result."
+    ]
 
 
 def timing_of(file: MotorFile) -> Timing:
@@ -126,14 +157,6 @@ def timing_of(file: MotorFile) -> Timing:
 
 def _gaps(timing: Timing) -> tuple[float, float]:
     return float(timing.inner_gap), float(timing.outer_gap)
-
-
-def _relative(name: str, errors: dict[str, float], results: Any) -> float:
-    scale = scale_of(name, results)
-    if name == "min_contact_force":
-        scale = max(scale, abs(results["ideal_torque"] / results["stroke"]))
-    error = errors[name] / scale if scale > 0 else errors[name]
-    return error if math.isfinite(error) else math.inf
 
 
 def _about(results: Any, file: MotorFile) -> list[str]:

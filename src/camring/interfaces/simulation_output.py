@@ -14,6 +14,7 @@ from camring.interfaces.config.document import printable
 from camring.interfaces.report.quantities import GROUPS, QUANTITIES, significant
 from camring.interfaces.simulated import Simulated
 from camring.interfaces.validation import finite
+from camring.metrics.accuracy import Accurate
 
 WIDTH_IN_PIPES = 100
 
@@ -29,8 +30,12 @@ def print_table(found: Simulated) -> None:
     out = console()
     out.print(_results(found))
     if found.numerical_error:
-        worst = max(found.numerical_error)
-        out.print(f"Numerical error: at most {worst:.1g} of any result (estimated).")
+        worst, most = max(found.numerical_error), max(map(_elements, found.climbed))
+        wanted = found.climbed[0].accuracy
+        out.print(
+            f"Numerical error: at most {worst:.1g} of any result (estimated; {wanted:g} wanted, "
+            f"{most} elements a lobe)."
+        )
     print_verdict(found, out)
 
 
@@ -85,6 +90,8 @@ def document(found: Simulated) -> str:
         if found.errors:
             record["numerical_error"] = found.numerical_error[place]
             record["errors"] = found.errors[place]
+            record["elements"] = _elements(found.climbed[place])
+            record["accuracy_reached"] = found.climbed[place].reached
         records.append(record)
     return json.dumps(
         finite(
@@ -98,6 +105,10 @@ def document(found: Simulated) -> str:
                 "constraints": outcome.constraints,
                 "feasible": not outcome.failure and not found.broken,
                 "numerical_error": max(found.numerical_error) if found.errors else None,
+                "accuracy": found.climbed[0].accuracy if found.errors else None,
+                "accuracy_reached": all(each.reached for each in found.climbed)
+                if found.errors
+                else None,
                 "failure": outcome.failure,
                 "warnings": found.warnings(),
             }
@@ -105,6 +116,10 @@ def document(found: Simulated) -> str:
         indent=1,
         allow_nan=False,
     )
+
+
+def _elements(climbed: Accurate) -> int:
+    return climbed.resolution.elements
 
 
 def versions() -> dict[str, str]:

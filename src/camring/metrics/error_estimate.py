@@ -1,30 +1,100 @@
 """How wrong results may be, from a second look at a coarser resolution."""
 
+from collections.abc import Iterator
+
 import equinox as eqx
 import jax
 import jax.numpy as jnp
 
 from camring.metrics.summary import Metrics
 
-FACTOR = 3
-"""How many times that difference is claimed: extremes and ripples need not shrink evenly."""
+FACTOR = 2
+"""How many times what a mesh of seven tenths changes is claimed: extremes and ripples need
+not shrink evenly."""
 
-FLOOR = 1.5e-5
+FLOOR = 4e-6
 """Share of a result below which two meshes may agree by chance."""
+
+CLIMBED_FACTOR = 1.5
+"""The same after the elements were doubled: the difference is the coarser mesh's error."""
+
+CLIMBED_FLOOR = 2e-6
+
+SMALL_BESIDE = {
+    "throttling_loss": ("input_power", 1e-4),
+    "leakage_loss": ("input_power", 1e-4),
+    "friction_loss": ("input_power", 1e-4),
+    "compression_loss": ("input_power", 1e-4),
+    "line_loss": ("input_power", 1e-4),
+    "min_pressure": ("max_pressure", 1e-4),
+    "supply_pressure_swing": ("max_pressure", 1e-4),
+}
+"""Differences of large numbers: below this share of another result they are judged by it."""
+
+FORCE_SHARE = 1e-3
+"""The same of the smallest contact force, beside the force of the ports' pressure difference."""
+
+COMPANIONS = frozenset(
+    {
+        "min_lift",
+        "max_lift",
+        "power_residual",
+        "pressure_overshoot",
+        "pressure_undershoot",
+        "air_release_margin",
+        "vapour_margin",
+        "share_below_air_release",
+        "share_below_vapour",
+    }
+)
+"""Differences and shares that have no size of their own, beside the results of model.md section 10.
+"""
 
 
 @eqx.filter_jit
-def error_estimate(results: Metrics, coarser: Metrics) -> Metrics:
-    """Absolute error of each result: several times what a coarser mesh changes, and a floor.
+def error_estimate(
+    results: Metrics, coarser: Metrics, factor: float = FACTOR, floor: float = FLOOR
+) -> Metrics:
+    """Absolute error of each result: what a coarser mesh changes, and a floor.
 
     The coarser mesh (`Resolution.second_look`) has about four times the error, so
     the difference is mostly its own and overstates that of the finer mesh. Extremes
     move by less regular steps, hence the factor; the floor stands for places where
-    both happen to agree. Both numbers are measured: against the independent solver,
+    both happen to agree. All numbers are measured: against the independent solver,
     on sound and on awkward random motors (docs/notes/verification.md).
+
+    Parameters
+    ----------
+    factor, floor
+        `CLIMBED_FACTOR` and `CLIMBED_FLOOR` where `results` have twice the elements
+        of `coarser`.
     """
     return jax.tree.map(
-        lambda fine, coarse: FACTOR * jnp.abs(fine - coarse) + FLOOR * jnp.abs(fine),
+        lambda fine, coarse: factor * jnp.abs(fine - coarse) + floor * jnp.abs(fine),
         results,
         coarser,
     )
+
+
+def relative_error(results: Metrics, error: Metrics) -> dict[str, float]:
+    """The error of each result as a share of it, or of what it is small beside.
+
+    Left out are the companions, what is nil (the line's loss without a line), and what is
+    not a finite number in the first place (contact stress under an undercut). A result
+    whose error is not finite has an infinite one.
+    """
+    return dict(_shares(results, error))
+
+
+def _shares(results: Metrics, error: Metrics) -> Iterator[tuple[str, float]]:
+    values = {name: float(value) for name, value in vars(results).items()}
+    of_ports = abs(values["ideal_torque"]) / values["stroke"] if values["stroke"] > 0 else 0.0
+    for name, value in values.items():
+        other, share = SMALL_BESIDE.get(name, (name, 1.0))
+        scale = max(abs(value), share * abs(values[other]))
+        if name == "min_contact_force":
+            scale = max(scale, FORCE_SHARE * of_ports)
+        if name in COMPANIONS or value == 0 or not 0 < scale < float("inf"):
+            continue
+        found = float(getattr(error, name)) / scale
+        yield name, found if found == found else float("inf")

@@ -8,9 +8,10 @@ divide it into intervals on which it is smooth.
 from typing import NamedTuple
 
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
-from camring.numerics.extremum import vertex_value
+from camring.numerics.extremum import EXTREMUM_FRACTIONS, quartic_top, vertex_value
 from camring.numerics.mesh import folded
 from camring.numerics.quantity import Q
 from camring.physics.cycle import Cycle
@@ -25,7 +26,7 @@ class TorqueRange(NamedTuple):
 
 
 def torque_range(cycle: Cycle) -> TorqueRange:
-    """Extremes of shaft torque, refined by a parabola in every smooth interval.
+    """Extremes of shaft torque: the most promising smooth interval each, looked at again.
 
     The element in which each piston stands needs no search: going round, piston
     `j` enters its next element exactly at the folded nodes that are its own.
@@ -43,10 +44,21 @@ def torque_range(cycle: Cycle) -> TorqueRange:
     entered = jnp.cumsum(own[order] == piston, axis=1)
     passed = jnp.sum(own < piston, axis=1, keepdims=True)
     element = jnp.clip(passed + entered - 1, 0)
-    where = piston * phase + jnp.stack([angle, (angle + following) / 2])[:, None]
-    torque = sample_located(cycle, element, where - from_first[element]).torque
-    at_start, at_middle = motor.pistons // phases * jnp.sum(torque, axis=1)
-    at_end = jnp.roll(at_start, -1)
-    highest = jnp.max(vertex_value(at_start, at_middle, at_end))
-    lowest = -jnp.max(vertex_value(-at_start, -at_middle, -at_end))
-    return TorqueRange(highest, lowest)
+
+    def torque_at(element: Array, within: Array) -> Array:
+        """Of all pistons: elements (piston, place), places within the phase (..., 1, place)."""
+        torque = sample_located(cycle, element, piston * phase + within - from_first[element])
+        return motor.pistons // phases * jnp.sum(torque.torque, axis=-2)
+
+    at_start, at_middle = torque_at(element, jnp.stack([angle, (angle + following) / 2])[:, None])
+
+    def most(sign: int) -> Array:
+        """The interval with the highest top, of torque with a sign."""
+        ends = sign * at_start
+        return jnp.argmax(vertex_value(ends, sign * at_middle, jnp.roll(ends, -1)))
+
+    best = jnp.repeat(jnp.stack([most(1), most(-1)]), len(EXTREMUM_FRACTIONS))
+    fraction = np.tile(EXTREMUM_FRACTIONS, 2)
+    place = angle[best] + fraction * (following - angle)[best]
+    high, low = torque_at(element[:, best], place[None]).reshape(2, -1)
+    return TorqueRange(quartic_top(high), -quartic_top(-low))

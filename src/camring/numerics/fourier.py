@@ -1,10 +1,10 @@
 """Fourier coefficients of a periodic waveform known on the elements of a mesh.
 
 The waveform is taken as a polynomial through its Gauss points in each element
-and integrated three times, exactly, however thin the element. The integral is
+and integrated four times, exactly, however thin the element. The integral is
 smooth enough to be sampled on a uniform grid for a fast Fourier transform,
-whose coefficients are then differentiated three times. What would alias is
-damped threefold: order `m` picks up order `K - m` times `(m/(K - m))^3` only,
+whose coefficients are then differentiated four times. What would alias is
+damped fourfold: order `m` picks up order `K - m` times `(m/(K - m))^4` only,
 `K` being the number of samples.
 """
 
@@ -17,8 +17,9 @@ from jaxtyping import Array, Complex, Float
 from camring.numerics.mesh import Mesh
 from camring.numerics.quadrature import gauss_legendre
 
-SAMPLES_PER_HARMONIC = 8
-INTEGRATIONS = 3
+SAMPLES_PER_HARMONIC = 20
+INTEGRATIONS = 4
+"""Five would lose the six hundredth order of a free ring to rounding."""
 
 
 @cache
@@ -26,6 +27,13 @@ def _powers_matrix(points: int) -> np.ndarray:
     """Powers 0 to n - 1 of the polynomial through values at Gauss points; shape (n, n)."""
     at, _ = gauss_legendre(points)
     return np.linalg.inv(at[:, None] ** np.arange(points))
+
+
+def _samples(count: int) -> int:
+    """Enough of them for so many harmonics, and a size that transforms fast."""
+    least = SAMPLES_PER_HARMONIC * count
+    step = 2 ** max(least.bit_length() - 3, 0)
+    return -(-least // step) * step
 
 
 def _integrate(powers: list[Array], width: Float[Array, " element"]) -> list[Array]:
@@ -75,7 +83,7 @@ def harmonics(
     for _ in range(INTEGRATIONS):
         powers = _integrate(powers, mesh.width)
 
-    samples = 2 ** int(np.ceil(np.log2(SAMPLES_PER_HARMONIC * count)))
+    samples = _samples(count)
     element, fraction = mesh.locate(mesh.start[0] + period / samples * jnp.arange(samples))
     sampled = powers[-1][:, element]
     for each in powers[-2::-1]:

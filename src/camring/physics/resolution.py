@@ -27,6 +27,11 @@ class Resolution:
         """For validation: every result to about 1e-7."""
         return cls(elements=500)
 
+    @classmethod
+    def ladder(cls) -> tuple["Resolution", ...]:
+        """What `simulate_to` tries in turn; each doubles the elements."""
+        return cls(), cls(elements=640), cls(elements=1280)
+
     def second_look(self) -> "Resolution":
         """The coarser mesh an error estimate compares with.
 

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 FAILED = 1
+FINEST, COARSEST = 3e-6, 0.01
 
 
 def simulate(
@@ -20,14 +21,29 @@ def simulate(
             help="Write one revolution and all results to this file: .nc, .csv, .xlsx or .mat.",
         ),
     ] = None,
+    accuracy: Annotated[
+        float,
+        typer.Option(
+            "--accuracy",
+            help="Wanted of each result, relative; the mesh is made finer until it is reached.",
+        ),
+    ] = 1e-5,
 ) -> None:
     """Simulate a motor at its operating points and print every result.
 
     Each operating point is one column; results below carry their numerical
-    error. Warnings tell of an undercut, cavitation or a roller that lifts off.
+    error. Warnings tell of an undercut, cavitation, a roller that lifts off or an
+    accuracy that was not reached.
     """
     from camring.interfaces.compilation_cache import keep_compiled_programs
+    from camring.interfaces.errors import InputError
 
+    if not FINEST <= accuracy <= COARSEST:
+        raise InputError(
+            "--accuracy",
+            f"is {accuracy:g} but must lie between {FINEST:g} and {COARSEST:g}",
+            "ask for the largest error you allow in any result, such as 1e-5",
+        )
     keep_compiled_programs()
 
     from camring.interfaces.config import read_motor_file
@@ -39,7 +55,7 @@ def simulate(
 
         require_known_ending(waveforms)
     file = read_motor_file(motor)
-    found = simulated(file)
+    found = simulated(file, accuracy=accuracy)
     if waveforms is not None:
         from camring.interfaces.waveform_file import write_simulation
 

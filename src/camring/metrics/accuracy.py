@@ -1,0 +1,104 @@
+"""A motor looked at ever more finely until every result is as accurate as was asked.
+
+A short ladder of resolutions: each rung is compared with the one below it, the
+first with a coarser look made for that purpose. Only rungs that are stepped on
+are compiled.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from camring.metrics.error_estimate import (
+    CLIMBED_FACTOR,
+    CLIMBED_FLOOR,
+    error_estimate,
+    relative_error,
+)
+from camring.metrics.summary import Metrics
+from camring.numerics.verdict import Fault
+from camring.physics.cycle import Cycle
+from camring.physics.resolution import Resolution
+
+
+class Look(NamedTuple):
+    """One motor at one operating point, seen at one resolution."""
+
+    cycle: Cycle
+    metrics: Metrics
+
+
+class Accurate(NamedTuple):
+    """What the last rung gave, and how good it is."""
+
+    cycle: Cycle
+    metrics: Metrics
+    error: Metrics
+    """Estimated absolute error of each result, in its unit."""
+    resolution: Resolution
+    accuracy: float
+    """What was asked for."""
+
+    @property
+    def relative_errors(self) -> dict[str, float]:
+        """The estimated error of each result of model.md section 10, as a share of it."""
+        return relative_error(self.metrics, self.error)
+
+    @property
+    def largest_error(self) -> float:
+        """Of any result, as a share of it."""
+        return max(self.relative_errors.values())
+
+    @property
+    def worst_result(self) -> str:
+        """The name of the result in which that error is."""
+        errors = self.relative_errors
+        return max(errors, key=lambda name: errors[name])
+
+    @property
+    def reached(self) -> bool:
+        """Whether every result is estimated to be as accurate as was asked."""
+        return _sound(self.cycle) and self.largest_error <= self.accuracy
+
+
+def climb(
+    look: Callable[[Resolution], Look],
+    accuracy: float = 1e-5,
+    ladder: tuple[Resolution, ...] | None = None,
+) -> Accurate:
+    """The first rung whose estimated error is within the accuracy, else the last sound one.
+
+    Parameters
+    ----------
+    look
+        Simulates and summarises at a resolution.
+    accuracy
+        Wanted of each result of model.md section 10, relative; see
+        `error_estimate.relative_error` for those that are small differences.
+    ladder
+        `Resolution.ladder()` if not given.
+
+    Notes
+    -----
+    No finer mesh mends a motor that is refused for what it is, so such a one stays on
+    the first rung. Not traceable: each step depends on numbers.
+    """
+    first, *rest = ladder or Resolution.ladder()
+    seen = look(first)
+    error = error_estimate(seen.metrics, look(first.second_look()).metrics)
+    found = Accurate(*seen, error, first, accuracy)
+    for finer in rest:
+        if found.reached or not _curable(found.cycle):
+            break
+        seen = look(finer)
+        error = error_estimate(seen.metrics, found.metrics, CLIMBED_FACTOR, CLIMBED_FLOOR)
+        if not (_sound(found.cycle) and not _sound(seen.cycle)):
+            found = Accurate(*seen, error, finer, accuracy)
+    return found
+
+
+def _sound(cycle: Cycle) -> bool:
+    return int(cycle.verdict.code) == Fault.NONE
+
+
+def _curable(cycle: Cycle) -> bool:
+    return int(cycle.verdict.code) in (Fault.NONE, Fault.NOT_CONVERGED)
