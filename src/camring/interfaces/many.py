@@ -28,13 +28,11 @@ from camring.physics.lane_cycle import LanesLook, fits
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
-LANES = 64
-"""Designs side by side: their numbers then fit a core's own cache."""
+CHUNK = 256
+"""Designs side by side in one call of a program."""
 
-BLOCKS = 4
-"""Blocks of lanes in one call of a program."""
-
-CHUNK = LANES * BLOCKS
+FEW = 8
+"""The same, where every design is solved by itself."""
 
 Points = Float[np.ndarray, "design coordinate"]
 
@@ -106,45 +104,16 @@ def _judged_by(
 def _in_lanes(
     space: DesignSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> Assessment:
-    designs = _designs(space, system, points.reshape(BLOCKS, LANES, -1))
+    designs = _designs(space, system, points)
     cycles = _solve(designs, look)
     metrics = _summarise(cycles, goal, look)
     return _judge(designs, cycles, metrics, goal)
 
 
-def _blocks(function: Callable) -> Callable:
-    """One block after another, in one program."""
-    return lambda blocks: jax.lax.map(function, blocks)
-
-
-@_program
-def _designs(space: DesignSpace, system: System, points: Points) -> System:
-    return _blocks(lambda block: designs_in_lanes(space, system, block))(points)
-
-
-@_program
-def _solve(designs: System, look: LanesLook) -> tuple:
-    return _blocks(lambda block: solve_designs(block, look))(designs)
-
-
-@_program
-def _summarise(cycles: tuple, goal: Goal, look: LanesLook) -> tuple:
-    return _blocks(lambda block: summarise_designs(block, goal, look))(cycles)
-
-
-@_program
-def _judge(designs: System, cycles: tuple, metrics: tuple, goal: Goal) -> Assessment:
-    def judged(designs: System, cycles: tuple, metrics: tuple) -> Assessment:
-        return judge_designs(designs, cycles, metrics, goal)
-
-    found = jax.vmap(judged)(designs, cycles, metrics)
-    return jax.tree.map(_side_by_side, found)
-
-
-def _side_by_side(blocks: jax.Array) -> jax.Array:
-    """(block, ..., lane) to (..., design)."""
-    moved = jax.numpy.moveaxis(blocks, 0, -2)
-    return moved.reshape(*moved.shape[:-2], -1)
+_designs = _program(designs_in_lanes)
+_solve = _program(solve_designs)
+_summarise = _program(summarise_designs)
+_judge = _program(judge_designs)
 
 
 @eqx.filter_jit
@@ -153,7 +122,7 @@ def _one_by_one(
 ) -> Assessment:
     resolution = Resolution.coarse() if look == LanesLook.search() else Resolution()
     judged = jax.vmap(lambda point: evaluate(space.apply(system, point), goal, resolution))
-    found = jax.lax.map(judged, points.reshape(-1, LANES // 8, points.shape[-1]))
+    found = jax.lax.map(judged, points.reshape(-1, FEW, points.shape[-1]))
     flat = jax.tree.map(lambda leaf: leaf.reshape(-1, *leaf.shape[2:]), found)
     return jax.tree.map(lambda leaf: jax.numpy.moveaxis(leaf, 0, -1), flat)
 
