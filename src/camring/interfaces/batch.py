@@ -92,13 +92,17 @@ def _in_chunks(
     look: Resolution | LanesLook,
     harmonics: int,
 ) -> Many:
-    program = _lanes if isinstance(look, LanesLook) else _results
     count = len(jax.tree.leaves(everything)[0])
     parts = []
     for start in range(0, count, CHUNK):
         chosen = np.minimum(np.arange(start, start + CHUNK), count - 1)
         chunk = jax.tree.map(lambda leaf, chosen=chosen: jnp.asarray(leaf)[chosen], everything)
-        parts.append(jax.device_get(program(chunk, look, harmonics)))
+        found = (
+            _lanes(chunk, look, harmonics)
+            if isinstance(look, LanesLook)
+            else _results(chunk, look, harmonics)
+        )
+        parts.append(jax.device_get(found))
     joined = jax.tree.map(lambda *leaves: np.concatenate(leaves)[:count], *parts)
     return Many(*joined)
 
