@@ -130,7 +130,9 @@ def main() -> None:
     (RESULTS / "batch_speed.json").write_text(json.dumps(written, indent=1) + "\n")
 
 
-def alone(space: DesignSpace, system: System, goal: Goal, points: np.ndarray, resolution: Resolution) -> float:
+def alone(
+    space: DesignSpace, system: System, goal: Goal, points: np.ndarray, resolution: Resolution
+) -> float:
     """Seconds a design of the solver of one motor, batched by `vmap`."""
     judged = eqx.filter_jit(
         jax.vmap(lambda at: evaluate(space.apply(system, at), goal, resolution))
@@ -138,7 +140,9 @@ def alone(space: DesignSpace, system: System, goal: Goal, points: np.ndarray, re
     return fastest(lambda: judged(points)) / len(points)
 
 
-def slopes(space: DesignSpace, system: System, goal: Goal, points: np.ndarray, look: LanesLook) -> float:
+def slopes(
+    space: DesignSpace, system: System, goal: Goal, points: np.ndarray, look: LanesLook
+) -> float:
     """Seconds a design for all slopes, from cycles at hand."""
     found = eqx.filter_jit(solve_designs)(designs_in_lanes(space, system, points), look)
     run = eqx.filter_jit(slopes_of_designs)
@@ -158,7 +162,9 @@ def solved(designs: System, lanes: int = 64) -> float:
     return fastest(lambda: total(solve(designs, look)[0], 600, look.oversampling), 5) / lanes
 
 
-def accuracy(space: DesignSpace, system: System, goal: Goal, points: np.ndarray) -> dict[str, list[str]]:
+def accuracy(
+    space: DesignSpace, system: System, goal: Goal, points: np.ndarray
+) -> dict[str, list[str]]:
     """Errors of some results against a fine look at each design by itself."""
     fine = Resolution(elements=640)
 
@@ -174,7 +180,7 @@ def accuracy(space: DesignSpace, system: System, goal: Goal, points: np.ndarray)
     truth = exact(points)
     found = {}
     for name, look in LOOKS.items():
-        metrics = evaluate_many(space, system, goal, points: np.ndarray, look).metrics[0]
+        metrics = evaluate_many(space, system, goal, points, look).metrics[0]
         errors = {
             each: np.abs(getattr(metrics, each) / np.asarray(getattr(truth, each)) - 1)
             for each in (*OF_OBJECTIVE, "mean_torque", *EXTREMES)
