@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -37,28 +36,18 @@ def refused(*arguments, **options):
     return done.stderr
 
 
-def test_help_answers_at_once():
-    best = min(_seconds("--help") for _ in range(5))
-    assert best < 0.3
-
-
-def _seconds(*arguments):
-    began = time.perf_counter()
-    assert camring_(*arguments).returncode == 0
-    return time.perf_counter() - began
-
-
-@pytest.mark.parametrize("arguments", [["--help"], *[[name, "--help"] for name in COMMANDS]])
-def test_help_imports_nothing_heavy(arguments):
+def test_help_imports_nothing_heavy():
     program = (
-        "import sys; from camring.interfaces.cli import app\n"
-        f"try: app({arguments!r})\n"
-        "except SystemExit: pass\n"
-        f"print([name for name in {HEAVY!r} if name in sys.modules], file=sys.stderr)"
+        "import sys; from camring.interfaces.cli import COMMANDS, app\n"
+        "for arguments in [['--help'], *([name, '--help'] for name in COMMANDS)]:\n"
+        "    try: app(arguments)\n"
+        "    except SystemExit: pass\n"
+        f"    heavy = [name for name in {HEAVY!r} if name in sys.modules]\n"
+        "    if heavy: print(arguments, heavy, file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert done.stderr.strip() == "[]"
-    assert "Usage" in done.stdout
+    assert done.stderr.strip() == ""
+    assert done.stdout.count("Usage") == len(COMMANDS) + 1
 
 
 def test_help_names_every_command():
