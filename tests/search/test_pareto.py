@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from camring.search.front import FrontProblem, trace_front
+from camring.search.multipliers import multipliers
 from camring.search.pareto import evenly_spread, hypervolume, non_dominated
 
 clouds = arrays(float, st.tuples(st.integers(1, 30), st.just(2)), elements=st.floats(0, 1))
@@ -61,6 +62,7 @@ def test_the_spread_keeps_ends_and_leaves_no_crowd():
 
 def schaffer():
     """x from -1 to 3: x^2 against (x - 2)^2; the front is sqrt(f1) + sqrt(f2) = 2."""
+
     def values(point):
         x = 4 * point[0] - 1
         return np.array([x**2, (x - 2) ** 2]), np.zeros(0)
@@ -129,3 +131,18 @@ def test_without_a_feasible_design_there_is_no_front():
         lambda x: (np.array([[1.0], [-1.0]]), np.array([[0.0]])),
     )
     assert trace_front(never, [np.array([0.5])], 5).best() == []
+
+
+def test_multipliers_are_the_price_of_a_limit():
+    """Least (x - 1)^2 + (y - 2)^2 where x + y <= 1 holds: at (0, 1), price 2."""
+    slope = np.array([2 * (0 - 1), 2 * (1 - 2)])
+    factors, left = multipliers(slope, np.array([[1.0, 1.0]]))
+    assert factors == pytest.approx([2.0])
+    assert left == pytest.approx(0.0, abs=1e-12)
+
+
+def test_no_limit_explains_a_slope_towards_the_inside():
+    factors, left = multipliers(np.array([1.0, 0.0]), np.array([[1.0, 0.0]]))
+    assert factors.tolist() == [0.0]
+    assert left == pytest.approx(1.0)
+    assert multipliers(np.array([1.0, 0.0]), np.zeros((0, 2)))[1] == 1.0

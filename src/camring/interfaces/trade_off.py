@@ -285,9 +285,7 @@ def _starts(model: _Traded, screened: int) -> list[Point]:
     return [given, *points[usable[chosen]]]
 
 
-def _looked_again(
-    model: _Traded, front: Front, count: int
-) -> tuple[list[Compromise], list[str]]:
+def _looked_again(model: _Traded, front: Front, count: int) -> tuple[list[Compromise], list[str]]:
     """Each design as its motor file says it, at finer resolution; beaten ones left out."""
     kept, dropped = [], []
     for place in front.best():

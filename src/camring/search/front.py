@@ -17,7 +17,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.optimize import minimize
 
-from camring.search.pareto import Values, box_of, non_dominated
+from camring.search.pareto import box_of, non_dominated
 from camring.search.threads import one_linear_algebra_thread
 
 Point: TypeAlias = Float[np.ndarray, " dimension"]
@@ -73,7 +73,7 @@ class Front:
             return []
         values = np.array(self.objectives)
         kept: list[int] = []
-        lowest, width = box_of(values)
+        _, width = box_of(values)
         for place in np.flatnonzero(non_dominated(values)):
             apart = [np.max(np.abs(values[place] - values[each]) / width) for each in kept]
             if not apart or min(apart) > SMALLEST_GAP / 10:
@@ -119,7 +119,9 @@ def trace_front(
     return tracer.front
 
 
-Aim: TypeAlias = tuple[Float[np.ndarray, " objective"], Float[np.ndarray, " objective"], list[Point]]
+Aim: TypeAlias = tuple[
+    Float[np.ndarray, " objective"], Float[np.ndarray, " objective"], list[Point]
+]
 
 
 class _Tracer:

@@ -82,7 +82,9 @@ def evenly_spread(values: Values, count: int) -> Int[np.ndarray, " chosen"]:
     return np.array(kept, dtype=int)
 
 
-def box_of(values: Values) -> tuple[Float[np.ndarray, " objective"], Float[np.ndarray, " objective"]]:
+def box_of(
+    values: Values,
+) -> tuple[Float[np.ndarray, " objective"], Float[np.ndarray, " objective"]]:
     """Lowest values of a front and how far the highest lie above; 1 where they do not."""
     lowest = np.min(values, axis=0)
     width = np.max(values, axis=0) - lowest
