@@ -1,7 +1,7 @@
 """The compromises that a motor file allows between two or three results, each looked at again."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -227,7 +227,7 @@ class _Traded:
             return np.eye(len(values))[int(np.argmax(values))]
         return self.weights
 
-    def summed(self, results: Sequence[dict]) -> Float[np.ndarray, " result"]:
+    def summed(self, results: Sequence[Mapping]) -> Float[np.ndarray, " result"]:
         """One number for each result from those of all operating points, SI."""
         columns = [np.array([float(each[name]) for each in results]) for name in self.names]
         return np.array([self.shares(n, c) @ c for n, c in zip(self.names, columns, strict=True)])

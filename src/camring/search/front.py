@@ -24,8 +24,8 @@ Point: TypeAlias = Float[np.ndarray, " dimension"]
 Pair: TypeAlias = tuple[Float[np.ndarray, "..."], Float[np.ndarray, "..."]]
 
 INSIDE = 1e-5  # what a descent keeps of every limit
-STEPS = 40  # of one descent
-ACCURACY = 1e-6  # of an objective in widths of the front
+STEPS = 25  # of one descent
+ACCURACY = 1e-5  # of an objective in widths of the front
 SMALLEST_GAP = 1e-3  # likewise; nearer neighbours are one compromise
 STARTS_EACH = 2  # descents towards the best of one objective
 SPARE = 1.3  # compromises sought for each one wanted, to choose evenly from
@@ -50,21 +50,18 @@ class FrontProblem:
 
 @dataclass
 class Front:
-    """Where descents have ended, and everything they have passed.
+    """Where descents have ended.
 
     Attributes
     ----------
     points, objectives
         Of feasible ends of descents, in the order in which they were found.
-    passed
-        Objectives of every feasible point seen.
     evaluations
         Points evaluated, feasible or not.
     """
 
     points: list[Point] = field(default_factory=list)
     objectives: list[Float[np.ndarray, " objective"]] = field(default_factory=list)
-    passed: list[Float[np.ndarray, " objective"]] = field(default_factory=list)
     evaluations: int = 0
 
     def best(self) -> list[int]:
@@ -129,6 +126,7 @@ class _Tracer:
         self.problem, self.front = problem, Front()
         self._values: dict[bytes, Pair] = {}
         self._slopes: dict[bytes, Pair] = {}
+        self._path: list[Point] = []
         begun = [(np.asarray(start), *self._at(np.asarray(start))) for start in starts]
         self.starts = [each for each in begun if np.all(np.isfinite(each[1]))]
         self.objectives = len(begun[0][1])
@@ -142,7 +140,7 @@ class _Tracer:
             self._values[key] = objectives, limits
             self.front.evaluations += 1
             if np.all(np.isfinite(objectives)) and np.all(limits <= 0):
-                self.front.passed.append(objectives)
+                self._path.append(point)
         return self._values[key]
 
     def _rated(self, point: Point) -> Pair:
@@ -249,6 +247,12 @@ class _Tracer:
             rated, limits = self._sloped(point)
             return -np.concatenate([rated[held], limits])
 
+        self._path = [start]
+
+        def merit(point: Point) -> float:
+            rated, _ = self._rated(point)
+            return float(weights @ rated) + 1e3 * float(np.sum(np.maximum(rated[held] - bound, 0)))
+
         found = minimize(
             lambda point: float(weights @ self._rated(point)[0]),
             start,
@@ -258,7 +262,7 @@ class _Tracer:
             method="SLSQP",
             options={"maxiter": STEPS, "ftol": ACCURACY},
         )
-        self._keep(found.x)
+        self._keep(found.x, merit)
 
     def _descend_along(
         self,
@@ -267,7 +271,11 @@ class _Tracer:
         towards: Float[np.ndarray, " objective"],
     ) -> bool:
         """As far below the aim as the worst of all objectives can come."""
-        behind = float(np.max((self._rated(start)[0] - aim) / towards))
+
+        def behind(point: Point) -> float:
+            return float(np.max((self._rated(point)[0] - aim) / towards))
+
+        self._path = [start]
 
         def room(both: Point) -> Float[np.ndarray, " limit"]:
             rated, limits = self._rated(both[:-1])
@@ -280,23 +288,28 @@ class _Tracer:
         last = np.eye(len(start) + 1)[-1]
         found = minimize(
             lambda both: float(both[-1]),
-            np.append(start, behind),
+            np.append(start, behind(start)),
             jac=lambda both: last,
             bounds=[(0.0, 1.0)] * len(start) + [(None, None)],
             constraints={"type": "ineq", "fun": room, "jac": room_slopes},
             method="SLSQP",
             options={"maxiter": STEPS, "ftol": ACCURACY},
         )
-        return self._keep(found.x[:-1])
+        return self._keep(found.x[:-1], behind)
 
-    def _keep(self, point: Point) -> bool:
-        point = np.clip(point, 0, 1)
-        objectives, limits = self._at(point)
-        if not np.all(np.isfinite(objectives)) or not np.all(limits <= 0):
+    def _keep(self, end: Point, merit: Callable[[Point], float]) -> bool:
+        """The best feasible point that the descent has passed, if any; often its end."""
+        feasible = [each for each in (np.clip(end, 0, 1), *self._path) if self._feasible(each)]
+        if not feasible:
             return False
-        self.front.points.append(point)
-        self.front.objectives.append(objectives)
+        best = min(feasible, key=merit)
+        self.front.points.append(best)
+        self.front.objectives.append(self._at(best)[0])
         return True
+
+    def _feasible(self, point: Point) -> bool:
+        objectives, limits = self._at(point)
+        return bool(np.all(np.isfinite(objectives)) and np.all(limits <= 0))
 
 
 def _rank(objective: float, limits: Float[np.ndarray, " constraint"]) -> tuple[float, float]:

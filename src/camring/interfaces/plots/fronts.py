@@ -1,8 +1,8 @@
 """A front of compromises: one result over another, and the motor as it stands."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -25,9 +25,13 @@ def front(found: "TradeOff", axes: Axes | None = None) -> Figure:
     values = found.values * [each.factor for each in shown]
     if len(shown) == 2:
         board.plot(*values.T, color=QUIET, linewidth=0.8, zorder=1)
-        board.scatter(*values.T, s=18, color="#0b5cad", zorder=2, label="best compromises")
+        board.scatter(
+            values[:, 0], values[:, 1], s=18, color="#0b5cad", zorder=2, label="best compromises"
+        )
     else:
-        dots = board.scatter(*values.T[:2], c=values[:, 2], s=24, cmap="viridis", zorder=2)
+        dots = board.scatter(
+            values[:, 0], values[:, 1], c=values[:, 2], s=24, cmap="viridis", zorder=2
+        )
         figure.colorbar(dots, ax=board, label=_label(found.names[2]))
     _number(board, values)
     given = found.given * [each.factor for each in shown]
@@ -35,7 +39,7 @@ def front(found: "TradeOff", axes: Axes | None = None) -> Figure:
     low, high = values.min(axis=0), values.max(axis=0)
     room = BESIDE * (high - low)
     if all((given >= low - room)[:2]) and all((given <= high + room)[:2]):
-        board.scatter(*given[:2], marker="D", s=30, color=LIMIT, zorder=3, label=words)
+        board.scatter(given[0], given[1], marker="D", s=30, color=LIMIT, zorder=3, label=words)
     else:
         at = ", ".join(each.written(si) for each, si in zip(shown, found.given, strict=True))
         board.plot([], [], "D", color=LIMIT, label=f"{words} lies off the picture, at {at}")
@@ -45,7 +49,7 @@ def front(found: "TradeOff", axes: Axes | None = None) -> Figure:
     return figure
 
 
-def _number(board: Axes, values: Sequence) -> None:
+def _number(board: Axes, values: np.ndarray) -> None:
     """The numbers of some designs, those of their files."""
     step = max(1, -(-len(values) // NUMBERED))
     for place in range(0, len(values), step):
