@@ -23,14 +23,14 @@ def show(found: Sensitivities) -> None:
     else:
         out.print(
             f"[yellow]Not an optimum:[/yellow] {100 * found.left:.0f} % of J's slope is explained "
-            "by no limit, so what relaxing one buys is a rough word. `camring optimise` first."
+            "by no limit, so what relaxing one would buy is not known. `camring optimise` first."
         )
 
 
 def _variables(found: Sensitivities) -> Table:
     title = "Change when a number goes up by 1 % of its range, most important first"
     table = Table(title=title, title_justify="left", box=None, pad_edge=False)
-    table.add_column("")
+    table.add_column("", no_wrap=True)
     table.add_column("J\n%", justify="right")
     names = list(found.results)
     for name in names:
@@ -42,7 +42,7 @@ def _variables(found: Sensitivities) -> Table:
         cells += [
             _signed(found.per_variable[name][place] * quantity(name).factor) for name in names
         ]
-        table.add_row(found.variables[place], *cells)
+        table.add_row(found.variables[place].rpartition(".")[2], *cells)
     return table
 
 
