@@ -29,6 +29,8 @@ COMMANDS = (
     "sweep",
     "compare",
     "optimise",
+    "pareto",
+    "sensitivities",
     "resume",
     "report",
     "export",

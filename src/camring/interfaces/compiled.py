@@ -5,10 +5,12 @@ its result, it is the same program for every operating point, command and study
 of motors with the same counts.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import equinox as eqx
 import jax.numpy as jnp
+from jaxtyping import Array, Float
 
 from camring.metrics import summary
 from camring.metrics.accuracy import Accurate, Look, climb
@@ -121,10 +123,23 @@ def slopes(
     design
         What was solved at the point; nothing is solved again.
     """
+    return slopes_with_results(space, given, unit_point, design, goal)[0]
+
+
+def slopes_with_results(
+    space: DesignSpace,
+    given: System,
+    unit_point: ArrayLike,
+    design: Solved,
+    goal: Goal,
+    results: Sequence[str] = (),
+) -> tuple[Slopes, list[dict[str, Float[Array, " coordinate"]]]]:
+    """`slopes`, and at each operating point those of the results used and of some more."""
     along = _directions(space, given, unit_point)
-    names = results_used(goal)
+    names = tuple(dict.fromkeys([*results_used(goal), *results]))
     of_results = [
         _result_slopes(each, Operated(along.motor, along.fluid, point), names, goal.harmonics)
         for each, point in zip(design.cycles, along.operating_points, strict=True)
     ]
-    return _judged_slopes(design.system, goal, design.metrics, along, of_results)
+    used = [{name: found[name] for name in results_used(goal)} for found in of_results]
+    return _judged_slopes(design.system, goal, design.metrics, along, used), of_results

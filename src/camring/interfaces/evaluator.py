@@ -79,7 +79,7 @@ class _Model:
         self.space: DesignSpace = motor_file.design_space
 
     def system_at(self, point: Point) -> System:
-        return _apply(self.space, self.system, point)
+        return applied(self.space, self.system, point)
 
     def approximate(
         self, points: Float[np.ndarray, "points dimension"]
@@ -111,7 +111,8 @@ def _model(text: str) -> _Model:
 
 
 @eqx.filter_jit
-def _apply(space: DesignSpace, system: System, point: Point) -> System:
+def applied(space: DesignSpace, system: System, point: Point) -> System:
+    """The system of one design, from one compiled program."""
     return space.apply(system, point)
 
 

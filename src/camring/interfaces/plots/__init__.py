@@ -15,6 +15,7 @@ from camring.interfaces.errors import CamringError
 
 if TYPE_CHECKING:
     from camring.interfaces.plots.curves import pressure_volume, spectrum, torque, waveforms
+    from camring.interfaces.plots.fronts import front
     from camring.interfaces.plots.grids import (
         efficiency_map,
         result_map,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "cam": "ring",
     "efficiency_map": "grids",
+    "front": "fronts",
     "pressure_volume": "curves",
     "result_map": "grids",
     "ripple_map": "grids",
@@ -40,6 +42,7 @@ _HOMES = {
 __all__ = [
     "cam",
     "efficiency_map",
+    "front",
     "pressure_volume",
     "require_matplotlib",
     "result_map",

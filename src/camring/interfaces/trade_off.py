@@ -1,0 +1,326 @@
+"""The compromises that a motor file allows between two or three results, each looked at again."""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import jax
+import numpy as np
+from jaxtyping import Float
+
+from camring.interfaces.compiled import (
+    Solved,
+    assess,
+    judge_solved,
+    slopes_with_results,
+    solve,
+)
+from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
+from camring.interfaces.config.keys import nearest
+from camring.interfaces.errors import CamringError, InputError, quote
+from camring.interfaces.evaluator import applied, outcome_of
+from camring.interfaces.many import evaluate_many
+from camring.interfaces.record import Outcome
+from camring.interfaces.validation import INDEPENDENT, look_again
+from camring.objective.design_space import DesignSpace
+from camring.physics.resolution import Resolution
+from camring.search.front import Front, FrontProblem, trace_front
+from camring.search.pareto import box_of, evenly_spread, hypervolume, non_dominated
+from camring.search.sampling import generator, sobol
+
+Point: TypeAlias = Float[np.ndarray, " dimension"]
+Say: TypeAlias = Callable[[str], None]
+
+SENSES = {
+    "torque_ripple": -1,
+    "flow_ripple": -1,
+    "pressure_ripple": -1,
+    "efficiency": 1,
+    "volumetric_efficiency": 1,
+    "hydromechanical_efficiency": 1,
+    "displacement": 1,
+    "mean_torque": 1,
+    "max_contact_stress": -1,
+    "max_pressure": -1,
+    "max_pressure_angle": -1,
+    "max_jerk": -1,
+    "jerk_objective": -1,
+}
+"""What may be traded, and whether more (+1) or less (-1) of it is better."""
+
+WORST = {name for name in SENSES if name.startswith("max_")}
+"""Counted at their worst operating point; the others as the weighted mean of all."""
+
+FEWEST, MOST = 2, 3
+SCREENED = 4096
+STARTS = 12
+FINER_AGREEMENT = 1e-3  # of a result, relative, between search and finer resolution
+INDEPENDENT_AGREEMENT = 1e-3
+MARGIN = 0.1  # of the front's width beyond its worst corner: where volume is counted from
+
+
+class NoFront(CamringError):
+    """No design keeps every limit."""
+
+    exit_code = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Compromise:
+    """One design of a front, with its results at finer resolution."""
+
+    point: Point
+    text: str
+    values: Float[np.ndarray, " result"]
+    outcome: Outcome
+
+
+@dataclass(frozen=True, eq=False)
+class TradeOff:
+    """A front.
+
+    Attributes
+    ----------
+    given
+        The results traded of the motor as it stands, SI.
+    compromises
+        Sorted by the first result, best first.
+    dropped
+        Designs left out because finer resolution did not confirm them, and why.
+    independent
+        Largest difference of a traded result to SciPy's solver in the sample, relative.
+    sample
+        How many designs that solver has looked at.
+    volume
+        Share of the front's own box, a tenth beyond its worst corner, that it dominates.
+    """
+
+    file: MotorFile
+    names: tuple[str, ...]
+    given: Float[np.ndarray, " result"]
+    given_keeps_limits: bool
+    compromises: Sequence[Compromise]
+    dropped: Sequence[str]
+    independent: float
+    sample: int
+    volume: float
+    evaluations: int
+    screened: int
+    search_seconds: float
+    check_seconds: float
+
+    @property
+    def values(self) -> Float[np.ndarray, "compromise result"]:
+        return np.array([each.values for each in self.compromises])
+
+
+def traded_results(text: str) -> tuple[str, ...]:
+    """Result names from `torque_ripple,efficiency`.
+
+    Raises
+    ------
+    InputError
+        For a name that cannot be traded, with its nearest neighbour; for too few or too many.
+    """
+    names = tuple(dict.fromkeys(text.replace(",", " ").split()))
+    for name in names:
+        if name not in SENSES:
+            close = nearest(name, list(SENSES))
+            raise InputError(
+                f"--of {quote(name)}",
+                "is no result that can be traded",
+                f"you probably meant {close}" if close else "give some of " + ", ".join(SENSES),
+            )
+    if not FEWEST <= len(names) <= MOST:
+        raise InputError("--of", f"names {len(names)} results", f"name {FEWEST} or {MOST}")
+    return names
+
+
+def trade_off(
+    file: MotorFile,
+    names: Sequence[str],
+    *,
+    points: int = 50,
+    screened: int = SCREENED,
+    sample: int = 3,
+    say: Say = lambda sentence: None,
+) -> TradeOff:
+    """Trace the front of some results, and look at each of its designs again.
+
+    Parameters
+    ----------
+    points
+        Designs wanted; fewer come back where the front is shorter than that.
+    screened
+        Designs judged side by side beforehand, for starts.
+    sample
+        Designs that SciPy's solver looks at.
+
+    Raises
+    ------
+    InputError
+        When the file has no design space.
+    NoFront
+        When no design keeps every limit.
+    """
+    if file.design_space is None:
+        raise missing_design_space(file.path)
+    model = _Traded(file, tuple(names))
+    began = time.monotonic()
+    say(f"Judging {screened} designs for starts.")
+    starts = _starts(model, screened)
+    say(f"Tracing the front from {len(starts)} starts.")
+    front = trace_front(
+        FrontProblem(model.values, model.slopes), starts, points, lambda found: say(f"{found}")
+    )
+    if not front.points:
+        raise NoFront(
+            f"No design of {file.path} keeps every limit: none of {screened} screened ones nor of "
+            f"{front.evaluations} in the descents; widen [design_space] or relax a limit."
+        )
+    searched = time.monotonic()
+    say("Looking again at finer resolution and with SciPy's stiff solver.")
+    kept, dropped = _looked_again(model, front, points)
+    worst, looked = _independent(model, kept, sample)
+    given, limits = model.values(model.space.locate(file.system))
+    return TradeOff(
+        file=file,
+        names=model.names,
+        given=given * -model.senses,
+        given_keeps_limits=bool(np.all(limits <= 0)),
+        compromises=kept,
+        dropped=dropped,
+        independent=worst,
+        sample=looked,
+        volume=_volume(np.array([each.values for each in kept]) * -model.senses),
+        evaluations=front.evaluations,
+        screened=screened,
+        search_seconds=searched - began,
+        check_seconds=time.monotonic() - searched,
+    )
+
+
+def _volume(losses: Float[np.ndarray, "compromise result"]) -> float:
+    if len(losses) < FEWEST:
+        return 0.0
+    lowest, width = box_of(losses)
+    reference = np.full(losses.shape[1], 1 + MARGIN)
+    return hypervolume((losses - lowest) / width, reference) / float(np.prod(reference))
+
+
+class _Traded:
+    """A motor file as objectives to make small."""
+
+    def __init__(self, file: MotorFile, names: tuple[str, ...]) -> None:
+        assert file.design_space is not None
+        self.file, self.names = file, names
+        self.space: DesignSpace = file.design_space
+        self.senses = np.array([SENSES[name] for name in names], dtype=float)
+        weights = np.array([float(each.weight) for each in file.system.operating_points])
+        self.weights = weights / weights.sum()
+        self._here: tuple[bytes, Solved] | None = None
+
+    def shares(self, name: str, values: Float[np.ndarray, " point"]) -> Float[np.ndarray, " point"]:
+        """How much of a result each operating point decides."""
+        if name in WORST:
+            return np.eye(len(values))[int(np.argmax(values))]
+        return self.weights
+
+    def summed(self, results: Sequence[Mapping]) -> Float[np.ndarray, " result"]:
+        """One number for each result from those of all operating points, SI."""
+        columns = [np.array([float(each[name]) for each in results]) for name in self.names]
+        return np.array([self.shares(n, c) @ c for n, c in zip(self.names, columns, strict=True)])
+
+    def _solved(self, point: Point) -> Solved:
+        if self._here is None or self._here[0] != point.tobytes():
+            found = solve(applied(self.space, self.file.system, point), self.file.goal)
+            self._here = point.tobytes(), found
+        return self._here[1]
+
+    def values(self, point: Point) -> tuple[np.ndarray, np.ndarray]:
+        """Losses and constraints; no numbers where the simulation failed."""
+        outcome = outcome_of(judge_solved(self._solved(point), self.file.goal))
+        losses = -self.senses * self.summed(outcome.results)
+        limits = np.array(list(outcome.constraints.values()))
+        return (np.full_like(losses, np.nan) if outcome.failure else losses), limits
+
+    def slopes(self, point: Point) -> tuple[np.ndarray, np.ndarray]:
+        solved, goal = self._solved(point), self.file.goal
+        found, of_results = jax.device_get(
+            slopes_with_results(self.space, self.file.system, point, solved, goal, self.names)
+        )
+        rows = []
+        for name, sense in zip(self.names, self.senses, strict=True):
+            values = np.array([float(getattr(each, name)) for each in solved.metrics])
+            slopes = np.stack([each[name] for each in of_results])
+            rows.append(-sense * self.shares(name, values) @ slopes)
+        limits = [found.constraints[name] for name in goal.constraints.names()]
+        return np.stack(rows), np.stack(limits)
+
+
+def _starts(model: _Traded, screened: int) -> list[Point]:
+    """The given design, the best of the screened ones in each result, and a spread between."""
+    given = model.space.locate(model.file.system)
+    if not screened:
+        return [given, *sobol(STARTS, model.space.dimension, generator(0, 0))]
+    points = sobol(screened, model.space.dimension, generator(0, 0))
+    found = evaluate_many(model.space, model.file.system, model.file.goal, points)
+    sound = np.all(np.asarray(found.faults) == 0, axis=0)
+    broken = np.sum(np.maximum(np.stack(list(found.constraints.values())), 0), axis=0)
+    broken = np.where(sound, broken, np.inf)
+    usable = np.flatnonzero(broken == 0)
+    if len(usable) < STARTS:
+        usable = np.argsort(broken)[:STARTS]
+    losses = np.array(
+        [
+            -model.senses
+            * model.summed([{n: getattr(m, n)[place] for n in model.names} for m in found.metrics])
+            for place in usable
+        ]
+    )
+    best = np.flatnonzero(non_dominated(losses))
+    lowest, width = box_of(losses[best])
+    chosen = best[evenly_spread((losses[best] - lowest) / width, STARTS)]
+    return [given, *points[usable[chosen]]]
+
+
+def _looked_again(model: _Traded, front: Front, count: int) -> tuple[list[Compromise], list[str]]:
+    """Each design as its motor file says it, at finer resolution; beaten ones left out."""
+    kept, dropped = [], []
+    for place in front.best():
+        point = front.points[place]
+        text = model.file.with_design(point.tolist())
+        motor = parse_motor_file(text, model.file.path)
+        outcome = outcome_of(assess(motor.system, motor.goal, Resolution.fine()))
+        values = model.summed(outcome.results)
+        searched = front.objectives[place] * -model.senses
+        broken = [name for name, value in outcome.constraints.items() if value > 0]
+        if outcome.failure or broken:
+            dropped.append(outcome.failure or f"breaks {broken[0]}")
+        elif np.any(np.abs(values - searched) > FINER_AGREEMENT * np.abs(values)):
+            dropped.append("results differ from those of the search")
+        else:
+            kept.append(Compromise(point, text, values, outcome))
+    if not kept:
+        raise NoFront(f"No design of the front holds at finer resolution: {dropped[0]}.")
+    losses = np.array([each.values for each in kept]) * -model.senses
+    best = np.flatnonzero(non_dominated(losses))
+    lowest, width = box_of(losses[best])
+    chosen = best[evenly_spread((losses[best] - lowest) / width, count)]
+    chosen = chosen[np.argsort(losses[chosen, 0])]
+    return [kept[place] for place in chosen], dropped
+
+
+def _independent(model: _Traded, kept: Sequence[Compromise], sample: int) -> tuple[float, int]:
+    """Largest relative difference to SciPy's solver over designs spread along the front."""
+    places = np.unique(np.linspace(0, len(kept) - 1, min(sample, len(kept))).round().astype(int))
+    worst = 0.0
+    for place in places:
+        seen = look_again(parse_motor_file(kept[place].text, model.file.path))[INDEPENDENT]
+        if seen.failure:
+            return float("inf"), len(places)
+        values = kept[place].values
+        difference = np.abs(model.summed(seen.results) - values) / np.abs(values)
+        worst = max(worst, float(np.max(difference)))
+    return worst, len(places)
