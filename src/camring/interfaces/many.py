@@ -59,6 +59,7 @@ def evaluate_many(
     points: Points,
     look: LanesLook | None = None,
     threads: int | None = None,
+    blocks: int = BLOCKS,
 ) -> Assessment:
     """Objective, terms, constraints and every result at many points of the unit box.
 
@@ -71,6 +72,8 @@ def evaluate_many(
         for objective terms to about 1e-4.
     threads
         One for each processor core that this process may use, unless given.
+    blocks
+        Blocks of lanes in one call of a program; 1 where points come by the dozen.
 
     Returns
     -------
@@ -80,10 +83,11 @@ def evaluate_many(
     points = np.asarray(points, dtype=float)
     look = look or LanesLook.search()
     judge_chunk = _in_lanes if fits(system.motor) else _one_by_one
-    judged = _judged_by(judge_chunk, space, system, goal, look)
-    starts = range(0, len(points), CHUNK)
+    chunk = LANES * blocks
+    judged = _judged_by(judge_chunk, space, system, goal, look, chunk)
+    starts = range(0, len(points), chunk)
     with ThreadPoolExecutor(threads or _cores()) as pool:
-        parts = list(pool.map(lambda start: judged(points[start : start + CHUNK]), starts))
+        parts = list(pool.map(lambda start: judged(points[start : start + chunk]), starts))
     return jax.tree.map(lambda *leaves: np.concatenate(leaves, axis=-1), *parts)
 
 
@@ -93,9 +97,10 @@ def _judged_by(
     system: System,
     goal: Goal,
     look: LanesLook,
+    chunk: int,
 ) -> Callable[[Points], Assessment]:
     def judged(some: Points) -> Assessment:
-        missing = CHUNK - len(some)
+        missing = chunk - len(some)
         padded = np.concatenate([some, np.broadcast_to(some[:1], (missing, some.shape[1]))])
         found = jax.device_get(judge_chunk(space, system, goal, padded, look))
         return jax.tree.map(lambda leaf: leaf[..., : len(some)], found)
@@ -106,7 +111,7 @@ def _judged_by(
 def _in_lanes(
     space: DesignSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> Assessment:
-    designs = _designs(space, system, points.reshape(BLOCKS, LANES, -1))
+    designs = _designs(space, system, points.reshape(-1, LANES, points.shape[-1]))
     cycles = _solve(designs, look)
     metrics = _summarise(cycles, goal, look)
     return _judge(designs, cycles, metrics, goal)

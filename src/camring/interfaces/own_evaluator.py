@@ -58,7 +58,9 @@ class OwnEvaluator:
     ) -> Float[np.ndarray, " points"]:
         """Our own simulation's objective at many points; NaN where it fails."""
         model = model_of(self.text)
-        found = evaluate_many(model.space, model.system, model.goal, np.asarray(points))
+        found = evaluate_many(
+            model.space, model.system, model.goal, np.asarray(points), threads=1, blocks=1
+        )
         sound = np.all(np.asarray(found.faults) == 0, axis=0)
         return np.where(sound, np.asarray(found.physical_objective), np.nan)
 

@@ -42,7 +42,7 @@ def _bayesian(task: Task) -> AbstractStrategy:
     refinement = int(SHARE_OF_REFINEMENT * task.budget)
     return Hybrid(
         (
-            Stage(learning, task.budget - refinement),
+            Stage(learning, max(task.budget - refinement, len(task.given))),
             Stage(NelderMead(task.dimension), None),
         )
     )
