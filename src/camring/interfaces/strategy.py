@@ -17,6 +17,8 @@ from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy
 
 MOST_THEORY_DESIGNS = 6
+FEWEST_TO_LEAN = 8
+"""Evaluations before a search that leans on our whole simulation begins to lean."""
 
 
 def first_points(motor_file: MotorFile, *, theory: bool) -> Float[np.ndarray, "points dimension"]:
@@ -56,6 +58,7 @@ def strategy_for(
                     dimension=space.dimension,
                     approximate=evaluator.approximate,
                     given=given,
+                    initial=FEWEST_TO_LEAN if isinstance(evaluator, OwnEvaluator) else None,
                     mode="penalised" if settings.mode == "penalised" else "separate",
                     penalty_weight=motor_file.goal.weights.penalty,
                     kappa=settings.kappa,
