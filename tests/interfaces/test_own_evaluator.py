@@ -238,7 +238,9 @@ def test_validation_asks_the_program_again_and_says_so(study):
     assert "checked by nothing else" in validation.sentence
     for eye in ("search", "finer", "independent"):
         assert validation.views["best"][eye]["results"][0]["efficiency"] == 0.9
-    assert (study.folder / "report.html").is_file()
+    page = (study.folder / "report.html").read_text()
+    assert "The designs were judged by" in page
+    assert "90.00" in page  # its efficiency, not ours
 
 
 def test_a_noisy_program_is_found_out(motor):
