@@ -58,7 +58,8 @@ def _nothing_found(records: Sequence[Record]) -> Validation:
     """No design keeps every limit: which one comes closest, and what it breaks."""
     closest = closest_of(records)
     if closest is None:
-        return Validation(-1, False, "Not validated: every evaluation failed.", [], {})
+        reason = f"; the last: {records[-1].outcome.failure}" if records else ""
+        return Validation(-1, False, f"Not validated: every evaluation failed{reason}.", [], {})
     worst = max(closest.outcome.constraints, key=lambda name: closest.outcome.constraints[name])
     excess = closest.outcome.constraints[worst]
     sentence = (
