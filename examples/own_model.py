@@ -1,6 +1,6 @@
 """A stand-in for your own expensive model: camring runs it once for each design.
 
-    camring optimise examples/wheel_motor.toml --out own --budget 60 \
+    camring optimise examples/wheel_motor.toml --out own --budget 14 \
         --evaluator "python examples/own_model.py" --timeout "60 s"
 
 It reads one JSON document and prints one. This one simulates the motor, adds a loss

@@ -6,12 +6,14 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from motor_files import SOUND, added
 
 import camring
+from camring.interfaces import own_evaluator
 from camring.interfaces.config import parse_motor_file
 from camring.interfaces.errors import InputError
 from camring.interfaces.evaluator import MotorEvaluator
@@ -179,6 +181,16 @@ def test_its_results_enter_objective_and_limits(motor):
     assert found.constraints["max_contact_stress"] == pytest.approx(1.0)  # 3.8 GPa of 1.9
     assert found.approximation == ours.physical_objective
     assert found.results[1]["efficiency"] == 0.5
+
+
+def test_the_search_leans_only_where_our_simulation_stands(motor, monkeypatch):
+    motor_file, point, _ = motor
+    judged = SimpleNamespace(
+        faults=np.array([[0, 0], [0, 3]]), physical_objective=np.array([1.0, 2.0])
+    )
+    monkeypatch.setattr(own_evaluator, "evaluate_many", lambda *_, **__: judged)
+    found = OwnEvaluator(motor_file.text, program("")).approximate(np.stack([point, point]))
+    np.testing.assert_array_equal(found, [1.0, np.nan])
 
 
 def test_our_failure_is_one_only_while_our_results_are_needed(motor):
