@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from camring.interfaces.errors import InputError
     from camring.interfaces.operating_map import operating_map
     from camring.interfaces.optimisation import optimise, resume
+    from camring.interfaces.own_function import FunctionMinimum, minimise_function
     from camring.interfaces.study import Study, open_study
     from camring.interfaces.sweep import sweep
     from camring.metrics.summary import Metrics
@@ -42,6 +43,7 @@ _HOMES = {
     "Constraints": "camring.objective.constraints",
     "Cycle": "camring.physics.cycle",
     "DesignSpace": "camring.objective.design_space",
+    "FunctionMinimum": "camring.interfaces.own_function",
     "Goal": "camring.objective.objective",
     "InputError": "camring.interfaces.errors",
     "Metrics": "camring.metrics.summary",
@@ -53,6 +55,7 @@ _HOMES = {
     "System": "camring.physics.system",
     "Weights": "camring.objective.terms",
     "evaluate": "camring.interfaces.compiled",
+    "minimise_function": "camring.interfaces.own_function",
     "open_study": "camring.interfaces.study",
     "operating_map": "camring.interfaces.operating_map",
     "optimise": "camring.interfaces.optimisation",
@@ -69,6 +72,7 @@ __all__ = [
     "Constraints",
     "Cycle",
     "DesignSpace",
+    "FunctionMinimum",
     "Goal",
     "InputError",
     "Metrics",
@@ -81,6 +85,7 @@ __all__ = [
     "Weights",
     "__version__",
     "evaluate",
+    "minimise_function",
     "open_study",
     "operating_map",
     "optimise",

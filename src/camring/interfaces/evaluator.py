@@ -32,7 +32,7 @@ class MotorEvaluator:
 
     def __call__(self, point: Point) -> Outcome:
         """What the simulation says about one design."""
-        model, solved = _model(self.text), _solved(self.text, point.tobytes())
+        model, solved = model_of(self.text), _solved(self.text, point.tobytes())
         return outcome_of(
             judge_solved(solved, model.goal),
             approximation=float(model.approximate(point[None])[0]),
@@ -43,7 +43,7 @@ class MotorEvaluator:
         self, points: Float[np.ndarray, "points dimension"]
     ) -> Float[np.ndarray, " points"]:
         """The linear model's guess of the objective at many points."""
-        return _model(self.text).approximate(points)
+        return model_of(self.text).approximate(points)
 
     def slopes(
         self, point: Point
@@ -54,13 +54,13 @@ class MotorEvaluator:
 
 @lru_cache(maxsize=4)  # a search asks for slopes where it has just been
 def _solved(text: str, point: bytes) -> Solved:
-    model = _model(text)
+    model = model_of(text)
     return solve(model.system_at(np.frombuffer(point)), model.goal)
 
 
 @lru_cache(maxsize=4096)
 def _slopes(text: str, point: bytes) -> tuple[np.ndarray, np.ndarray]:
-    model, at = _model(text), np.frombuffer(point)
+    model, at = model_of(text), np.frombuffer(point)
     found: Slopes = jax.device_get(
         slopes(model.space, model.system, at, _solved(text, point), model.goal)
     )
@@ -68,12 +68,13 @@ def _slopes(text: str, point: bytes) -> tuple[np.ndarray, np.ndarray]:
     return np.asarray(found.objective), np.stack(of_constraints)
 
 
-class _Model:
+class Model:
     """A motor file made ready for many evaluations."""
 
     def __init__(self, motor_file: MotorFile) -> None:
         if motor_file.design_space is None:
             raise missing_design_space(motor_file.path)
+        self.file = motor_file
         self.system: System = motor_file.system
         self.goal: Goal = motor_file.goal
         self.space: DesignSpace = motor_file.design_space
@@ -106,8 +107,9 @@ def _values(space: DesignSpace, design: System) -> dict[str, float | list[float]
 
 
 @lru_cache(maxsize=4)
-def _model(text: str) -> _Model:
-    return _Model(parse_motor_file(text))
+def model_of(text: str) -> Model:
+    """The motor file of a text, read once."""
+    return Model(parse_motor_file(text))
 
 
 @eqx.filter_jit

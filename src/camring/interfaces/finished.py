@@ -1,6 +1,7 @@
 """What came of a study, as a table for people or one document for programs."""
 
 import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -132,6 +133,8 @@ def _margins(finished: Finished) -> Table:
 
 
 def _margin(value: float) -> str:
+    if math.isnan(value):
+        return "–"
     text = f"{-value:+.4f}".replace("-", "−")
     return text if value <= 0 else f"[red]{text}[/]"
 

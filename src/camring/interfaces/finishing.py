@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from camring.interfaces.config import MotorFile, parse_motor_file
 from camring.interfaces.finished import Finished
+from camring.interfaces.own_evaluator import from_fact
 from camring.interfaces.record import Record, best_of, closest_of
 from camring.interfaces.report import write_report
 from camring.interfaces.study_folder import StudyFolder, write_safely
@@ -27,11 +28,15 @@ def finish(
         validation = _nothing_found(records)
         study.best_path.unlink(missing_ok=True)
     else:
-        say("Looking again at finer resolution and with SciPy's stiff solver.")
+        command = from_fact(facts["evaluator"]) if "evaluator" in facts else None
+        say(
+            "Looking again at finer resolution and with SciPy's stiff solver"
+            + (f", and asking `{command}` again." if command else ".")
+        )
         text = given.with_design(best.point.tolist())
         claimed = {GIVEN: records[0].outcome, BEST: best.outcome}
         motor = parse_motor_file(text, study.best_path)
-        validation = validate(best.trial, given, motor, claimed)
+        validation = validate(best.trial, given, motor, claimed, command)
         write_safely(study.best_path, text.encode())
     write_safely(study.validation_path, validation.to_json().encode())
     say("Writing the report.")
@@ -53,7 +58,8 @@ def _nothing_found(records: Sequence[Record]) -> Validation:
     """No design keeps every limit: which one comes closest, and what it breaks."""
     closest = closest_of(records)
     if closest is None:
-        return Validation(-1, False, "Not validated: every evaluation failed.", [], {})
+        reason = f"; the last: {records[-1].outcome.failure}" if records else ""
+        return Validation(-1, False, f"Not validated: every evaluation failed{reason}.", [], {})
     worst = max(closest.outcome.constraints, key=lambda name: closest.outcome.constraints[name])
     excess = closest.outcome.constraints[worst]
     sentence = (

@@ -57,6 +57,7 @@ def evaluate_many(
     points: Points,
     look: LanesLook | None = None,
     threads: int | None = None,
+    chunk: int = CHUNK,
 ) -> Assessment:
     """Objective, terms, constraints and every result at many points of the unit box.
 
@@ -69,6 +70,8 @@ def evaluate_many(
         for objective terms to about 1e-4.
     threads
         One for each processor core that this process may use, unless given.
+    chunk
+        Designs in one call of a program; a smaller number where points come by the dozen.
 
     Returns
     -------
@@ -78,10 +81,10 @@ def evaluate_many(
     points = np.asarray(points, dtype=float)
     look = look or LanesLook.search()
     judge_chunk = _in_lanes if fits(system.motor) else _one_by_one
-    judged = _judged_by(judge_chunk, space, system, goal, look)
-    starts = range(0, len(points), CHUNK)
+    judged = _judged_by(judge_chunk, space, system, goal, look, chunk)
+    starts = range(0, len(points), chunk)
     with ThreadPoolExecutor(threads or _cores()) as pool:
-        parts = list(pool.map(lambda start: judged(points[start : start + CHUNK]), starts))
+        parts = list(pool.map(lambda start: judged(points[start : start + chunk]), starts))
     return jax.tree.map(lambda *leaves: np.concatenate(leaves, axis=-1), *parts)
 
 
@@ -91,9 +94,10 @@ def _judged_by(
     system: System,
     goal: Goal,
     look: LanesLook,
+    chunk: int,
 ) -> Callable[[Points], Assessment]:
     def judged(some: Points) -> Assessment:
-        missing = CHUNK - len(some)
+        missing = chunk - len(some)
         padded = np.concatenate([some, np.broadcast_to(some[:1], (missing, some.shape[1]))])
         found = jax.device_get(judge_chunk(space, system, goal, padded, look))
         return jax.tree.map(lambda leaf: leaf[..., : len(some)], found)

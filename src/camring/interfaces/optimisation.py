@@ -13,7 +13,7 @@ import numpy as np
 import camring
 from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
 from camring.interfaces.config.document import decode, read_text
-from camring.interfaces.config.goal_tables import BAYESIAN, METHODS
+from camring.interfaces.config.goal_tables import BAYESIAN
 from camring.interfaces.coordinator import Search, search
 from camring.interfaces.errors import InputError
 from camring.interfaces.evaluator import MotorEvaluator
@@ -21,8 +21,10 @@ from camring.interfaces.executors import InThisProcess
 from camring.interfaces.finished import Finished
 from camring.interfaces.finishing import finish
 from camring.interfaces.interrupt import Interrupted, Interruption
+from camring.interfaces.own_evaluator import OwnEvaluator, from_fact, to_fact
 from camring.interfaces.record import Record
 from camring.interfaces.strategy import first_points, strategy_for
+from camring.interfaces.study_choices import command_of, method_of
 from camring.interfaces.study_folder import StudyFolder, require_vacant, unwritable
 
 
@@ -64,6 +66,8 @@ def optimise(
     seed: int | None = None,
     method: str | None = None,
     theory: bool = True,
+    evaluator: str | Sequence[str] | None = None,
+    timeout: str | float | None = None,
     executor: Executor | None = None,
     watch: Watch = Silent,
 ) -> Finished:
@@ -81,6 +85,11 @@ def optimise(
         "gradient" or "bayesian"; else as in the file.
     theory
         Whether the search begins also with what theory recommends.
+    evaluator, timeout
+        A program of your own that judges designs, run in the present folder, and the
+        seconds (or a text such as "5 min") after which it is stopped; else as in the
+        file's `[evaluator]`, which runs in the file's folder. Without either our
+        simulation judges.
     executor
         Where evaluations run; else in this process.
 
@@ -100,9 +109,8 @@ def optimise(
         raise missing_design_space(path)
     budget = motor_file.search.budget if budget is None else budget
     seed = motor_file.search.seed if seed is None else seed
-    method = motor_file.search.method if method is None else method
-    if method not in METHODS:
-        raise InputError("method", f"is {method!r}", f"choose one of {', '.join(METHODS)}")
+    command = command_of(motor_file, evaluator, timeout)
+    method = method_of(motor_file, method, command)
     with Interruption() as interruption:
         try:
             first = interruption.run(InThisProcess(), _first_points, motor_file, theory)
@@ -113,6 +121,7 @@ def optimise(
             "budget": str(budget),
             "method": method,
             "theory": str(theory).lower(),
+            **({} if command is None else {"evaluator": to_fact(command)}),
             "first_points": json.dumps(first.tolist()),
             "given_name": path.name,
             "camring": camring.__version__,
@@ -151,7 +160,11 @@ def _go_on(
         facts, kept = study.store.facts(), study.store.records()
         budget = int(facts["budget"])
         motor_file = parse_motor_file(read_text(study.given_path), study.given_path)
-        evaluator = MotorEvaluator(motor_file.text)
+        evaluator: MotorEvaluator | OwnEvaluator = MotorEvaluator(motor_file.text)
+        if "evaluator" in facts:
+            command = from_fact(facts["evaluator"])
+            command.require_runnable()
+            evaluator = OwnEvaluator(motor_file.text, command)
         first = [np.array(point) for point in json.loads(facts["first_points"])]
         # A study without this note was begun when there was no other method.
         method = facts.get("method", BAYESIAN)

@@ -8,6 +8,7 @@ from jaxtyping import Float
 from camring.interfaces.config import MotorFile, missing_design_space
 from camring.interfaces.config.goal_tables import GRADIENT
 from camring.interfaces.evaluator import MotorEvaluator
+from camring.interfaces.own_evaluator import OwnEvaluator
 from camring.objective.theory import theory_designs
 from camring.search.bayesian import Bayesian
 from camring.search.gradient import GradientSearch
@@ -16,6 +17,8 @@ from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy
 
 MOST_THEORY_DESIGNS = 6
+FEWEST_TO_LEAN = 8
+"""Evaluations before a search that leans on our whole simulation begins to lean."""
 
 
 def first_points(motor_file: MotorFile, *, theory: bool) -> Float[np.ndarray, "points dimension"]:
@@ -35,7 +38,7 @@ def first_points(motor_file: MotorFile, *, theory: bool) -> Float[np.ndarray, "p
 def strategy_for(
     motor_file: MotorFile,
     method: str,
-    evaluator: MotorEvaluator,
+    evaluator: MotorEvaluator | OwnEvaluator,
     first: Sequence[Float[np.ndarray, " dimension"]],
     budget: int,
 ) -> AbstractStrategy:
@@ -45,6 +48,7 @@ def strategy_for(
     settings = motor_file.search
     given = tuple(tuple(map(float, point)) for point in first)
     if method == GRADIENT:
+        assert isinstance(evaluator, MotorEvaluator), "a user's own program has no slopes"
         return GradientSearch(space.dimension, evaluator.slopes, given)
     refinement = int(settings.refinement * budget)
     return Hybrid(
@@ -54,6 +58,7 @@ def strategy_for(
                     dimension=space.dimension,
                     approximate=evaluator.approximate,
                     given=given,
+                    initial=FEWEST_TO_LEAN if isinstance(evaluator, OwnEvaluator) else None,
                     mode="penalised" if settings.mode == "penalised" else "separate",
                     penalty_weight=motor_file.goal.weights.penalty,
                     kappa=settings.kappa,

@@ -17,6 +17,8 @@ from camring.interfaces.beside import scale_of
 from camring.interfaces.compiled import assess
 from camring.interfaces.config import MotorFile
 from camring.interfaces.evaluator import outcome_of
+from camring.interfaces.own_command import CommandFailed, OwnCommand
+from camring.interfaces.own_evaluator import ask_about, names_given, overlaid
 from camring.interfaces.record import Outcome, failed
 from camring.interfaces.report.quantities import QUANTITIES
 from camring.metrics.independent import NotStarShapedError, OrbitError, independent_results
@@ -107,6 +109,7 @@ def validate(
     given: MotorFile,
     best: MotorFile,
     claimed: Mapping[str, Outcome],
+    command: OwnCommand | None = None,
 ) -> Validation:
     """Every claimed gain and every constraint margin, restated.
 
@@ -116,16 +119,20 @@ def validate(
         The two motors, the best one as it stands in the file that the user gets.
     claimed
         What the search said of each, under `GIVEN` and `BEST`.
+    command
+        The user's own program, where one judged the designs: it is asked again, and its
+        results stand before those of the other eyes, which cannot know better.
     """
-    views = {
-        name: {SEARCH: claimed[name], **look_again(file)}
-        for name, file in ((GIVEN, given), (BEST, best))
-    }
+    views, names = {}, list[str]()
+    for name, file in ((GIVEN, given), (BEST, best)):
+        seen = look_again(file)
+        if command is not None:
+            seen, names = _with_command(file, seen, command)
+        views[name] = {SEARCH: claimed[name], **seen}
     checks = [check for eye in EYES for check in _checks(views, eye)]
     broken = [check for check in checks if not check.passed]
     sentence = (
-        "Validated: every limit and every gain holds at finer resolution and by SciPy's stiff "
-        "solver."
+        f"Validated: every limit and every gain holds {_by_what(command, names)}."
         if not broken
         else f"Not validated: {broken[0].name} does not hold ({broken[0].detail})."
     )
@@ -141,6 +148,32 @@ def validate(
     )
 
 
+def _with_command(
+    file: MotorFile, seen: Mapping[str, Outcome], command: OwnCommand
+) -> tuple[dict[str, Outcome], list[str]]:
+    """Each eye with the program's results, and which these are."""
+    try:
+        given = ask_about(command, file)
+    except CommandFailed as error:
+        return {eye: failed(f"`{command}`: {error}") for eye in seen}, []
+    overlaid_by_eye = {
+        eye: overlaid(file.system, file.goal, outcome, given) for eye, outcome in seen.items()
+    }
+    return overlaid_by_eye, names_given(given)
+
+
+def _by_what(command: OwnCommand | None, names: Sequence[str]) -> str:
+    eyes = "at finer resolution and by SciPy's stiff solver"
+    if command is None:
+        return eyes
+    if not names:
+        return f"{eyes}; `{command}` gave no result of its own"
+    return (
+        f"with {', '.join(names)} from `{command}`, asked again and checked by nothing else, and "
+        f"all other results {eyes}"
+    )
+
+
 def _checks(views: Mapping[str, Mapping[str, Outcome]], eye: str) -> list[Check]:
     given, best = views[GIVEN][eye], views[BEST][eye]
     by = EYES[eye]
@@ -153,6 +186,10 @@ def _checks(views: Mapping[str, Mapping[str, Outcome]], eye: str) -> list[Check]
     ]
     checks.append(_gain(views, eye))
     for name in (GIVEN, BEST):
+        if views[name][SEARCH].failure and not views[name][SEARCH].results:
+            reason = str(views[name][SEARCH].failure)
+            checks.append(Check(f"the {name} motor in the search", False, reason))
+            continue
         checks.append(
             _agreement(views[name][SEARCH], views[name][eye], f"of the {name} motor {by}")
         )

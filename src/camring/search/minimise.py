@@ -4,15 +4,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
+from camring.search.ask_tell import AskTell
 from camring.search.problem import (
     AbstractStrategy,
     Evaluation,
     Memory,
+    Outputs,
     Problem,
-    Proposal,
     Stop,
-    best_of,
 )
 
 HOPELESS = 20  # evaluations; if the first so many all fail, something else is wrong
@@ -39,30 +40,13 @@ class Outcome:
     memory: Memory
 
 
-def evaluated(problem: Problem, proposal: Proposal, trial: int) -> Evaluation:
+def _outputs(problem: Problem, point: Float[np.ndarray, " dimension"]) -> Outputs:
     """One trial carried out; an exception of the problem becomes a failed evaluation."""
-    failure: str | None
     try:
-        outputs = problem.evaluate(proposal.point[None])[0]
-        objective, constraints, approximation, failure = outputs
+        return problem.evaluate(point[None])[0]
     except Exception as error:  # recorded, not fatal: one bad point must not end a study
-        objective, approximation = np.nan, np.nan
-        constraints = np.full(problem.constraint_count, np.nan)
-        failure = f"{type(error).__name__}: {error}"
-    constraints = np.asarray(constraints, dtype=float)
-    if failure is None and not np.isfinite(objective):
-        failure = f"the objective is {objective}"
-    if failure is None and not np.all(np.isfinite(constraints)):
-        failure = f"constraint {int(np.argmin(np.isfinite(constraints)))} is not finite"
-    return Evaluation(
-        trial,
-        proposal.point,
-        float(objective),
-        constraints,
-        float(approximation),
-        failure,
-        proposal.phase,
-    )
+        nothing = np.full(problem.constraint_count, np.nan)
+        return np.nan, nothing, np.nan, f"{type(error).__name__}: {error}"
 
 
 def minimise(
@@ -89,20 +73,19 @@ def minimise(
     tolerance
         Violation up to which a constraint counts as satisfied.
     """
-    done = list(history)
-    remembered: Memory = dict(memory or {})
+    asking = AskTell(strategy, problem.constraint_count, seed, history, memory)
     reason = f"The budget of {budget} evaluations is spent."
-    while len(done) < budget:
-        proposal = strategy.propose(done, remembered, seed)
-        if isinstance(proposal, Stop):
-            reason = proposal.reason
+    while len(asking.history) < budget:
+        point = asking.ask()
+        if isinstance(point, Stop):
+            reason = point.reason
             break
-        evaluation = evaluated(problem, proposal, len(done))
-        done.append(evaluation)
-        remembered = proposal.memory
+        objective, constraints, approximation, failure = _outputs(problem, point)
+        evaluation = asking.tell(objective, constraints, failure, approximation=approximation)
         if on_evaluation is not None:
-            on_evaluation(evaluation, remembered)
+            on_evaluation(evaluation, asking.memory)
+        done = asking.history
         if len(done) == HOPELESS and all(one.failed for one in done):
             reason = f"The first {HOPELESS} evaluations all failed; the last: {evaluation.failure}."
             break
-    return Outcome(best_of(done, tolerance), tuple(done), reason, remembered)
+    return Outcome(asking.best(tolerance), asking.history, reason, asking.memory)

@@ -39,6 +39,17 @@ def optimise(
             help="Begin also from cams of zero geometric ripple, where the space holds them.",
         ),
     ] = True,
+    evaluator: Annotated[
+        str | None,
+        typer.Option(
+            help="Your own program that judges designs, such as 'python my_model.py'; it reads "
+            "and writes JSON (docs/guide/expensive-models.md)."
+        ),
+    ] = None,
+    timeout: Annotated[
+        str | None,
+        typer.Option(help="When to stop it, such as '5 min'; else that of the file, or 600 s."),
+    ] = None,
     json: Annotated[
         bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
     ] = False,
@@ -60,6 +71,8 @@ def optimise(
         seed=seed,
         method=method and method.value,
         theory=theory,
+        evaluator=evaluator,
+        timeout=timeout,
         watch=SearchProgress,
     )
     raise typer.Exit(show(finished, as_json=json))

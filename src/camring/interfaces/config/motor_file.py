@@ -12,10 +12,11 @@ from camring.interfaces.config.build import build_system
 from camring.interfaces.config.design import build_design_space
 from camring.interfaces.config.document import parse, printable, read_text
 from camring.interfaces.config.goal import build_goal
+from camring.interfaces.config.goal_tables import GRADIENT
 from camring.interfaces.config.keys import Choices, choose, file_tables
 from camring.interfaces.config.oil import with_oil
 from camring.interfaces.config.soundness import require_sound
-from camring.interfaces.config.tables import FileTables, SearchTable
+from camring.interfaces.config.tables import EvaluatorTable, FileTables, SearchTable
 from camring.interfaces.config.translate import input_error
 from camring.interfaces.config.writer import changed_text
 from camring.interfaces.errors import InputError
@@ -38,6 +39,8 @@ class MotorFile:
         What may change; None when the file has no `[design_space]`.
     search
         Settings of the search.
+    evaluator
+        The user's own program that judges designs; None is our simulation.
     choices
         The laws the file has chosen.
     path
@@ -50,6 +53,7 @@ class MotorFile:
     goal: Goal
     design_space: DesignSpace | None
     search: SearchTable
+    evaluator: EvaluatorTable | None
     choices: Choices
     path: Path
 
@@ -97,10 +101,27 @@ def parse_motor_file(text: str, path: Path = Path("motor.toml")) -> MotorFile:
     space = None
     if tables.design_space is not None:
         space = build_design_space(tables.design_space, tables, system, choices)
-    elif "search" in document:
-        raise InputError("[search]", "has no effect without [design_space]", "add one or leave it")
+    for name in ("search", "evaluator"):
+        if space is None and name in document:
+            raise InputError(
+                f"[{name}]", "has no effect without [design_space]", "add one or leave it"
+            )
+    if tables.evaluator is not None and document.get("search", {}).get("method") == GRADIENT:
+        raise InputError(
+            "search.method",
+            'is "gradient", which needs slopes that the command of [evaluator] does not give',
+            'leave it out, or write method = "bayesian"',
+        )
     return MotorFile(
-        text, document, system, build_goal(tables), space, tables.search, choices, path
+        text=text,
+        document=document,
+        system=system,
+        goal=build_goal(tables),
+        design_space=space,
+        search=tables.search,
+        evaluator=tables.evaluator,
+        choices=choices,
+        path=path,
     )
 
 

@@ -17,6 +17,7 @@ from camring.interfaces.config.entries import (
     Text,
     Word,
 )
+from camring.interfaces.config.evaluator_table import EvaluatorTable
 from camring.interfaces.config.goal_tables import ConstraintsTable, ObjectiveTable, SearchTable
 from camring.interfaces.config.table import FULL_TURN, Table, pressure_entry
 from camring.physics.oils import OILS
@@ -305,6 +306,7 @@ class FileTables(Table):
     constraints: ConstraintsTable = ConstraintsTable()
     design_space: dict[str, Any] | None = None
     search: SearchTable = SearchTable()
+    evaluator: EvaluatorTable | None = None
 
 
 __all__ = [
@@ -312,6 +314,7 @@ __all__ = [
     "Band",
     "CamTable",
     "ConstraintsTable",
+    "EvaluatorTable",
     "FileTables",
     "FluidTable",
     "GapTable",

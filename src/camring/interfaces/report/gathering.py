@@ -1,6 +1,7 @@
 """From a study's folder, or from motor files, to everything a report shows."""
 
 import json
+import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -9,7 +10,9 @@ import numpy as np
 from camring.interfaces.config import MotorFile, parse_motor_file, read_motor_file
 from camring.interfaces.config.document import printable
 from camring.interfaces.errors import InputError
+from camring.interfaces.own_evaluator import from_fact
 from camring.interfaces.record import Record, best_of, closest_of
+from camring.interfaces.report.as_judged import as_judged, who_judged
 from camring.interfaces.report.coordinates import coordinates_of, variables_of
 from camring.interfaces.report.data import Design, ReportData, Verdict
 from camring.interfaces.report.limits import constraints_of
@@ -61,13 +64,17 @@ def gather(folder: str | Path) -> ReportData:
     points: list[np.ndarray] = [] if space is None else [space.locate(system)]
     if best_record is not None and last is not None:
         points.append(best_record.point)
+    given_trial = _given_trial(records, points)
+    if "evaluator" in facts:
+        first = None if given_trial is None else records[given_trial]
+        found, designs = as_judged(found, designs, [first, best_record][: len(found)])
     return ReportData(
         title=_title(given),
         subtitle=_subtitle(designs[-1]),
         designs=designs,
         verdict=_verdict(study, best, weights),
         constraints=constraints_of(found, designs),
-        warnings=_warnings(found[-1:], designs[-1:]),
+        warnings=who_judged(facts) + _warnings(found[-1:], designs[-1:]),
         variables=variables_of(given, points) if len(points) == len(designs) else (),
         search=search_of(
             records,
@@ -75,7 +82,7 @@ def gather(folder: str | Path) -> ReportData:
             coordinates_of(given),
             memory,
             stopped=facts.get("stopped", ""),
-            given=_given_trial(records, points),
+            given=given_trial,
             best=None if best is None or best_record is None else best_record.trial,
             notes=_notes(records, facts),
         ),
@@ -217,6 +224,11 @@ def _settings(facts: Mapping[str, str], records: Sequence[Record]) -> dict[str, 
             options += f" --method {facts['method']}"
         if facts.get("theory") == "false":
             options += " --no-theory"
+        if "evaluator" in facts:
+            command = from_fact(facts["evaluator"])
+            settings["Evaluator"] = f"{command}, at most {command.timeout:g} s each"
+            words = shlex.quote(shlex.join(command.words))
+            options += f" --evaluator {words} --timeout {command.timeout:g}"
         name = facts.get("given_name", "MOTOR.toml")
         settings["To repeat"] = f"camring optimise {name} --out FOLDER {options}"
     seconds = sum(record.seconds for record in records)

@@ -1,0 +1,251 @@
+"""A user's own Python function, minimised: expensive, without slopes, sometimes failing."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from camring.interfaces.errors import InputError, quote
+from camring.interfaces.own_process import FunctionFailed, OwnProcess
+from camring.search.ask_tell import AskTell
+from camring.search.minimise import HOPELESS
+from camring.search.problem import Evaluation, Stop, best_of
+from camring.search.strategies import STRATEGIES, Task, strategy_named
+
+OBJECTIVE = "objective"
+WITHOUT_SLOPES = tuple(name for name in STRATEGIES if name != "gradient")
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class FunctionMinimum:
+    """What a search of a user's function found.
+
+    Attributes
+    ----------
+    best
+        The row of the lowest objective that keeps every constraint, else of the
+        least violation; None when every evaluation failed.
+    feasible
+        Whether `best` keeps every constraint.
+    history
+        A row for each evaluation: `trial`, `phase`, each variable, `objective`, each
+        constraint, `failure` (None when there was none), and whatever else the function
+        returned. Any table library reads it: `pandas.DataFrame(found.history)`.
+    stop_reason
+        Which test ended the search, in one sentence.
+    """
+
+    best: Row | None
+    feasible: bool
+    history: list[Row]
+    stop_reason: str
+
+
+def minimise_function(
+    function: Callable[..., Any],
+    variables: Mapping[str, tuple[float, float]],
+    constraints: Sequence[str] = (),
+    *,
+    budget: int = 100,
+    seed: int = 0,
+    method: str = "bayesian",
+    given: Sequence[Mapping[str, float]] = (),
+    timeout: float | None = None,
+    watch: Callable[[Row], None] = lambda row: None,
+) -> FunctionMinimum:
+    """Minimises a function of named numbers between bounds.
+
+    Parameters
+    ----------
+    function
+        Called as `function(width=0.5, height=1.2)`. Returns the objective; or a pair
+        `(objective, constraints)`, these in order or by name; or a dictionary with
+        "objective", each constraint, and whatever else shall stand in the history.
+        An exception, NaN or missing number is a failed evaluation, which the search
+        notes and learns to avoid.
+    variables
+        Name to (low, high), in the function's own units.
+    constraints
+        Names of what must be at most 0. Best of the order of one, such as
+        `stress / limit - 1`.
+    budget
+        Evaluations in all.
+    method
+        "bayesian" or "nelder-mead".
+    given
+        Designs to begin with, name to number.
+    timeout
+        Seconds after which an evaluation is stopped and counts as failed; the function
+        then runs in a process of its own.
+    watch
+        Called with each row of the history as it comes.
+
+    Raises
+    ------
+    InputError
+        When bounds, names, budget, method or timeout cannot be used.
+    """
+    box = _Box(variables)
+    names = _names_of(constraints, box)
+    if isinstance(budget, bool) or not isinstance(budget, int) or budget < 1:
+        raise InputError("budget", f"is {quote(budget)}", "give a whole number from 1 up")
+    if method not in WITHOUT_SLOPES:
+        raise InputError("method", f"is {quote(method)}", f"choose {' or '.join(WITHOUT_SLOPES)}")
+    if timeout is not None and not timeout > 0:
+        raise InputError("timeout", f"is {quote(timeout)}", "give seconds above zero")
+    starts = tuple(box.located(place, design) for place, design in enumerate(given))
+    strategy = strategy_named(method, Task(len(box.names), budget, starts))
+    asking = AskTell(strategy, len(names), seed)
+    elsewhere = OwnProcess(function, timeout) if timeout is not None else None
+    history: list[Row] = []
+    try:
+        reason = f"The budget of {budget} evaluations is spent."
+        while len(history) < budget:
+            point = asking.ask()
+            if isinstance(point, Stop):
+                reason = point.reason
+                break
+            values = box.values(point)
+            answer = _answer(function, elsewhere, values, names)
+            told = asking.tell(answer.objective, answer.constraints, answer.failure)
+            history.append(_row(told, values, names, answer))
+            watch(history[-1])
+            if len(history) == HOPELESS and all(one.failed for one in asking.history):
+                reason = f"The first {HOPELESS} evaluations all failed; the last: {told.failure}."
+                break
+    finally:
+        if elsewhere is not None:
+            elsewhere.close()
+    best = best_of(asking.history)
+    return FunctionMinimum(
+        None if best is None else history[best.trial],
+        best is not None and best.feasible(),
+        history,
+        reason,
+    )
+
+
+class _Box:
+    """Named bounds, and the unit box that the search sees."""
+
+    def __init__(self, variables: Mapping[str, tuple[float, float]]) -> None:
+        if not variables:
+            raise InputError("variables", "is empty", 'give such as {"width": (0.1, 0.5)}')
+        self.names = tuple(variables)
+        for name, bounds in variables.items():
+            where = f"variables[{quote(name)}]"
+            try:
+                low, high = map(float, bounds)
+            except (TypeError, ValueError):
+                raise InputError(where, "is no pair of numbers", "give (low, high)") from None
+            if not (math.isfinite(low) and math.isfinite(high) and low < high):
+                raise InputError(
+                    where, f"is ({low:g}, {high:g})", "give finite bounds, the lower first"
+                )
+        self._low = np.array([float(low) for low, _ in variables.values()])
+        self._high = np.array([float(high) for _, high in variables.values()])
+
+    def values(self, point: np.ndarray) -> dict[str, float]:
+        found = self._low + (self._high - self._low) * point
+        found = np.clip(found, self._low, self._high)
+        return dict(zip(self.names, found.tolist(), strict=True))
+
+    def located(self, place: int, design: Mapping[str, float]) -> tuple[float, ...]:
+        where = f"given[{place}]"
+        if set(design) != set(self.names):
+            raise InputError(where, "does not name every variable", f"give {', '.join(self.names)}")
+        values = np.array([float(design[name]) for name in self.names])
+        outside = ~((values >= self._low) & (values <= self._high))
+        if outside.any():
+            at = int(np.argmax(outside))
+            raise InputError(
+                f"{where}[{quote(self.names[at])}]",
+                f"is {values[at]:g}, outside {self._low[at]:g} to {self._high[at]:g}",
+                "widen the bounds or begin elsewhere",
+            )
+        return tuple(((values - self._low) / (self._high - self._low)).tolist())
+
+
+@dataclass(frozen=True)
+class _Answer:
+    objective: float
+    constraints: Sequence[float]
+    failure: str | None
+    extra: Mapping[str, Any]
+
+
+def _names_of(constraints: Sequence[str], box: _Box) -> tuple[str, ...]:
+    names = (constraints,) if isinstance(constraints, str) else tuple(constraints)
+    for name in names:
+        if name in (*box.names, OBJECTIVE, "trial", "phase", "failure") or names.count(name) > 1:
+            raise InputError("constraints", f"has {quote(name)}, a name in use", "rename it")
+    return names
+
+
+def _answer(
+    function: Callable[..., Any],
+    elsewhere: OwnProcess | None,
+    values: Mapping[str, float],
+    names: Sequence[str],
+) -> _Answer:
+    try:
+        found = function(**values) if elsewhere is None else elsewhere(values)
+        return _read(found, names)
+    except FunctionFailed as error:
+        failure = str(error)
+    except InputError:
+        raise
+    except Exception as error:  # recorded, not fatal: one bad design must not end a search
+        failure = f"{type(error).__name__}: {error}"
+    return _Answer(math.nan, [math.nan] * len(names), failure, {})
+
+
+def _read(found: Any, names: Sequence[str]) -> _Answer:
+    extra: dict[str, Any] = {}
+    limits: Any
+    if isinstance(found, Mapping):
+        if OBJECTIVE not in found:
+            raise FunctionFailed('its dictionary has no "objective"')
+        objective, limits = found[OBJECTIVE], found
+        extra = {str(key): found[key] for key in found if key not in (OBJECTIVE, *names)}
+    elif isinstance(found, tuple) and len(found) == 2:
+        objective, limits = found
+    else:
+        objective, limits = found, ()
+    if isinstance(limits, Mapping):
+        missing = [name for name in names if name not in limits]
+        if missing:
+            raise FunctionFailed(f"it returned no {', '.join(missing)}")
+        limits = [limits[name] for name in names]
+    values = np.atleast_1d(np.asarray(limits, dtype=float))
+    if len(values) != len(names):
+        raise FunctionFailed(f"it returned {len(values)} constraints, not {len(names)}")
+    objective = _number(objective)
+    for name, value in zip((OBJECTIVE, *names), (objective, *values), strict=True):
+        if not math.isfinite(value):
+            raise FunctionFailed(f"{name} is {value}")
+    return _Answer(objective, values.tolist(), None, extra)
+
+
+def _number(value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise FunctionFailed(f"its objective is {quote(value)}, which is no number") from None
+
+
+def _row(
+    told: Evaluation, values: Mapping[str, float], names: Sequence[str], answer: _Answer
+) -> Row:
+    row: Row = {
+        "trial": told.trial,
+        "phase": told.phase,
+        **values,
+        OBJECTIVE: told.objective,
+        **dict(zip(names, told.constraints.tolist(), strict=True)),
+        "failure": told.failure,
+    }
+    return {**{key: value for key, value in answer.extra.items() if key not in row}, **row}

@@ -1,0 +1,97 @@
+"""What the caller of a study chose in place of its file: method, and who judges designs."""
+
+import os
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+from camring.interfaces.config import MotorFile
+from camring.interfaces.config.entries import Unfit
+from camring.interfaces.config.evaluator_table import USUAL_TIMEOUT, EvaluatorTable
+from camring.interfaces.config.goal_tables import BAYESIAN, GRADIENT, METHODS
+from camring.interfaces.errors import InputError, quote
+from camring.interfaces.own_command import OwnCommand
+
+
+def command_of(
+    motor_file: MotorFile,
+    evaluator: str | Sequence[str] | None,
+    timeout: str | float | None,
+) -> OwnCommand | None:
+    """The program that judges designs; None when our simulation does.
+
+    Raises
+    ------
+    InputError
+        When it cannot be run, or the time cannot be read.
+    """
+    table = motor_file.evaluator
+    if evaluator is None and table is None:
+        if timeout is not None:
+            raise InputError("--timeout", "has no effect without --evaluator", "give both")
+        return None
+    patience = USUAL_TIMEOUT if table is None else table.timeout
+    if timeout is not None:
+        patience = _seconds(timeout)
+    if evaluator is not None:
+        command = OwnCommand(_words(evaluator), patience, os.getcwd())
+    else:
+        assert table is not None
+        folder = Path(motor_file.path).resolve().parent
+        command = OwnCommand(tuple(table.command), patience, str(folder))
+    command.require_runnable()
+    return command
+
+
+def method_of(motor_file: MotorFile, method: str | None, command: OwnCommand | None) -> str:
+    """How designs are sought; a program without slopes leaves only one way.
+
+    Raises
+    ------
+    InputError
+        When there is no such method, or it needs slopes and there are none.
+    """
+    if method is not None and method not in METHODS:
+        raise InputError("method", f"is {method!r}", f"choose one of {', '.join(METHODS)}")
+    if command is None:
+        return motor_file.search.method if method is None else method
+    if method == GRADIENT:
+        raise InputError(
+            "method",
+            f"is {quote(method)}, which needs slopes that `{command}` does not give",
+            f"leave it out, or choose {BAYESIAN}",
+        )
+    return BAYESIAN
+
+
+def _words(evaluator: str | Sequence[str]) -> tuple[str, ...]:
+    try:
+        # On Windows a backslash separates folders.
+        words = (
+            shlex.split(evaluator, posix=os.name != "nt")
+            if isinstance(evaluator, str)
+            else evaluator
+        )
+    except ValueError as error:
+        raise InputError(
+            "--evaluator", f"is {quote(evaluator)}: {str(error).lower()}", "close every quote"
+        ) from None
+    if not words or not words[0]:
+        raise InputError("--evaluator", "is empty", 'give such as "python my_model.py"')
+    return tuple(map(str, words))
+
+
+def _seconds(timeout: str | float) -> float:
+    entry = next(e for e in EvaluatorTable.model_fields["timeout"].metadata if hasattr(e, "read"))
+    try:
+        return float(entry.read(_plain(timeout)))
+    except Unfit as error:
+        raise InputError(f"--timeout{error.inside}", error.problem, error.way_out) from None
+
+
+def _plain(timeout: str | float) -> str | float:
+    """On a command line 60 arrives as text."""
+    try:
+        return float(timeout)
+    except ValueError:
+        return timeout

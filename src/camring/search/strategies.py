@@ -1,0 +1,80 @@
+"""Every strategy by its name: a new one is a file of its own and a line here."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+import numpy as np
+from jaxtyping import Float
+
+from camring.search.bayesian import Bayesian
+from camring.search.gradient import GradientSearch, Slopes
+from camring.search.hybrid import Hybrid, Stage
+from camring.search.nelder_mead import NelderMead
+from camring.search.problem import AbstractStrategy, Points
+
+SHARE_OF_REFINEMENT = 0.2  # of a Bayesian search's budget, for the simplex at its end
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a strategy may want to know before it begins.
+
+    Attributes
+    ----------
+    given
+        Points of the unit box to evaluate first.
+    approximate
+        Cheap approximation of the objective, (k, dimension) to (k,), or None.
+    slopes
+        Gradients of objective and constraints at a point, or None.
+    """
+
+    dimension: int
+    budget: int
+    given: tuple[tuple[float, ...], ...] = ()
+    approximate: Callable[[Points], Float[np.ndarray, " points"]] | None = None
+    slopes: Slopes | None = None
+
+
+def _bayesian(task: Task) -> AbstractStrategy:
+    learning = Bayesian(task.dimension, approximate=task.approximate, given=task.given)
+    refinement = int(SHARE_OF_REFINEMENT * task.budget)
+    return Hybrid(
+        (
+            Stage(learning, max(task.budget - refinement, len(task.given))),
+            Stage(NelderMead(task.dimension), None),
+        )
+    )
+
+
+def _nelder_mead(task: Task) -> AbstractStrategy:
+    return NelderMead(task.dimension, start=task.given[0] if task.given else None)
+
+
+def _gradient(task: Task) -> AbstractStrategy:
+    if task.slopes is None:
+        raise ValueError("gradient needs slopes, and there are none; use bayesian")
+    return GradientSearch(task.dimension, task.slopes, task.given)
+
+
+STRATEGIES: dict[str, Callable[[Task], AbstractStrategy]] = {
+    "bayesian": _bayesian,
+    "gradient": _gradient,
+    "nelder-mead": _nelder_mead,
+}
+
+
+def strategy_named(name: str, task: Task) -> AbstractStrategy:
+    """The strategy of this name, ready for a task.
+
+    Raises
+    ------
+    ValueError
+        When there is none of the name, or the task lacks what it needs.
+    """
+    if name not in STRATEGIES:
+        close = get_close_matches(name, STRATEGIES, n=1)
+        hint = f" (did you mean {close[0]!r}?)" if close else ""
+        raise ValueError(f"there is no strategy {name!r}{hint}; choose {', '.join(STRATEGIES)}")
+    return STRATEGIES[name](task)
