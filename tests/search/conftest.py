@@ -84,6 +84,19 @@ def townsend():
 
 
 @pytest.fixture(scope="session")
+def disc():
+    """The point of the unit disc nearest to (1, 1): squared distance 2 (1 - 1/sqrt 2)^2."""
+
+    def value(x):
+        return (x[0] - 1) ** 2 + (x[1] - 1) ** 2
+
+    def excess(x):
+        return [x[0] ** 2 + x[1] ** 2 - 1]
+
+    return on_unit_box(value, [-2, -2], [2, 2], excess, 1)
+
+
+@pytest.fixture(scope="session")
 def g07():
     """Ten variables, eight constraints, six active; 3e-6 of the box is feasible.
 

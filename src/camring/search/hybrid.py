@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from jaxtyping import Float
+
 from camring.search.problem import AbstractStrategy, Evaluation, Memory, Proposal, Stop
 
 
@@ -44,3 +47,9 @@ class Hybrid(AbstractStrategy):
             begun = len(history)
             memories.append({})
         return Stop(" ".join(notes) or "There is no stage.")
+
+    def ahead(self, memory: Memory) -> list[Float[np.ndarray, " dimension"]]:
+        """Of the stage whose turn it is, as far as its budget goes."""
+        memories: list[Memory] = memory.get("memories", [{}])
+        place = len(memories) - 1
+        return self.stages[place].strategy.ahead(memories[place]) if self.stages[place:] else []

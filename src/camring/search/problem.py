@@ -130,6 +130,14 @@ class AbstractStrategy(abc.ABC):
             The only source of chance.
         """
 
+    def ahead(self, memory: Memory) -> list[Float[np.ndarray, " dimension"]]:
+        """The points that will be proposed next whatever the evaluations bring, in order.
+
+        Several workers evaluate them at once. A strategy that thinks in batches keeps
+        the rest of its batch in its memory, as `ahead`.
+        """
+        return [np.array(point, dtype=float) for point in memory.get("ahead", ())]
+
 
 def best_of(history: Sequence[Evaluation], tolerance: float = 0.0) -> Evaluation | None:
     """The feasible evaluation of lowest objective, else the least violation; None if all failed."""

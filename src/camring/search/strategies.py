@@ -8,10 +8,12 @@ import numpy as np
 from jaxtyping import Float
 
 from camring.search.bayesian import Bayesian
+from camring.search.cma_es import CmaEs
 from camring.search.gradient import GradientSearch, Slopes
 from camring.search.hybrid import Hybrid, Stage
 from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy, Points
+from camring.search.scbo import Scbo
 
 SHARE_OF_REFINEMENT = 0.2  # of a Bayesian search's budget, for the simplex at its end
 
@@ -52,6 +54,14 @@ def _nelder_mead(task: Task) -> AbstractStrategy:
     return NelderMead(task.dimension, start=task.given[0] if task.given else None)
 
 
+def _scbo(task: Task) -> AbstractStrategy:
+    return Scbo(task.dimension, approximate=task.approximate, given=task.given)
+
+
+def _cma_es(task: Task) -> AbstractStrategy:
+    return CmaEs(task.dimension, given=task.given)
+
+
 def _gradient(task: Task) -> AbstractStrategy:
     if task.slopes is None:
         raise ValueError("gradient needs slopes, and there are none; use bayesian")
@@ -60,8 +70,10 @@ def _gradient(task: Task) -> AbstractStrategy:
 
 STRATEGIES: dict[str, Callable[[Task], AbstractStrategy]] = {
     "bayesian": _bayesian,
+    "cma-es": _cma_es,
     "gradient": _gradient,
     "nelder-mead": _nelder_mead,
+    "scbo": _scbo,
 }
 
 

@@ -69,13 +69,24 @@ class Surrogate:
     ) -> tuple[Float[np.ndarray, "points outputs"], Float[np.ndarray, "points outputs"]]:
         """Mean and standard deviation of each warped output."""
         warped = self._warped_approximation(points)
-        basis = np.zeros((self.outputs, len(points), 2))
-        basis[:, :, 0] = 1.0
-        basis[0] = basis_columns(self.learned.mean, warped)
-        mean, variance = predict_each(self.posteriors, points, basis)
+        mean, variance = predict_each(self.posteriors, points, self._columns(warped))
         means = np.array(mean).T
         means[:, 0] += offset(self.learned.mean, warped)
         return means, np.sqrt(np.asarray(variance)).T
+
+    def basis(
+        self, points: Float[np.ndarray, "points dimension"]
+    ) -> Float[np.ndarray, "outputs points 2"]:
+        """What the fitted coefficients of each output multiply."""
+        return self._columns(self._warped_approximation(points))
+
+    def _columns(
+        self, warped: Float[np.ndarray, " points"]
+    ) -> Float[np.ndarray, "outputs points 2"]:
+        basis = np.zeros((self.outputs, len(warped), 2))
+        basis[:, :, 0] = 1.0
+        basis[0] = basis_columns(self.learned.mean, warped)
+        return basis
 
     def bounds(
         self, point: Float[np.ndarray, " dimension"], multipliers: Float[np.ndarray, " outputs"]

@@ -44,16 +44,30 @@ class TrustRegion:
     caution: float = 0.0
     collapses: int = 0
 
-    def after_step(self, improved: bool, feasible: bool) -> "TrustRegion":
-        """The region after a step inside it. Eriksson et al. (2019), TuRBO, section 2."""
+    def after_step(
+        self,
+        improved: bool,
+        feasible: bool,
+        patience: int = LOSSES_TO_SHRINK,
+        smallest: float = SMALLEST,
+    ) -> "TrustRegion":
+        """The region after a step, or a batch, in it. Eriksson et al. (2019), TuRBO, section 2.
+
+        Parameters
+        ----------
+        patience
+            Losses in a row that halve it.
+        smallest
+            Edge below which it begins anew.
+        """
         caution = max(self.caution - 1.0, 0.0) if feasible else self.caution + 1.0
         wins, losses = (self.wins + 1, 0) if improved else (0, self.losses + 1)
         length, collapses = self.length, self.collapses
         if wins == WINS_TO_GROW:
             length, wins = min(2 * length, LARGEST), 0
-        if losses == LOSSES_TO_SHRINK:
+        if losses >= patience:
             length, losses = length / 2, 0
-        if length < SMALLEST:
+        if length < smallest:
             length, collapses = AT_FIRST, collapses + 1
         return TrustRegion(length, wins, losses, min(caution, MOST_CAUTION), collapses)
 
@@ -61,9 +75,13 @@ class TrustRegion:
         """The region after a search of the whole box found a better point elsewhere."""
         return replace(self, length=max(self.length, AFTER_A_DISCOVERY), wins=0, losses=0)
 
-    def around(self, centre: Float[np.ndarray, " dimension"]) -> Region:
-        """The part of the cube that lies in the unit box."""
-        half = self.length / 2
+    def around(
+        self,
+        centre: Float[np.ndarray, " dimension"],
+        shape: Float[np.ndarray, " dimension"] | float = 1.0,
+    ) -> Region:
+        """The part of the cube, or of a brick of that shape, that lies in the unit box."""
+        half = np.broadcast_to(self.length / 2 * np.asarray(shape), centre.shape)
         return Region(np.clip(centre - half, 0.0, 1.0), np.clip(centre + half, 0.0, 1.0))
 
     def to_memory(self) -> Memory:

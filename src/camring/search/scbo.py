@@ -1,0 +1,233 @@
+"""Constrained Bayesian search in a trust region, in batches: for models that are dear.
+
+Of the family of TuRBO (Eriksson et al. 2019) and SCBO (Eriksson and Poloczek 2021):
+one Gaussian process for the objective and one for each constraint, under warps that
+make them easier to learn; a brick around the best point, longer where the objective
+changes slowly, that grows with success and shrinks with failure; Thompson sampling
+in it. Two things are added. One point of each batch is not drawn but descended to
+by the slopes of the processes, which is what makes the last digits cheap; and a
+known approximation of the objective may serve as its prior mean.
+
+When the brick has become too small to matter, the search begins again elsewhere.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from camring.search.acquisition import Criterion, Region, apart, spread_candidates, suggest
+from camring.search.dataset import collect
+from camring.search.learning import Learned, learn
+from camring.search.problem import AbstractStrategy, Evaluation, Memory, Points, Proposal, Stop
+from camring.search.sampling import generator, initial_point
+from camring.search.surrogate import Surrogate, build
+from camring.search.thompson import best_of_draw, draws
+from camring.search.threads import one_linear_algebra_thread
+from camring.search.trust_region import TrustRegion
+
+Point = Float[np.ndarray, " dimension"]
+
+CANDIDATES = 512
+FEWEST_TO_LEARN_FROM = 3
+MOST_STRETCHED = 4.0  # longest over mean edge of the brick, and mean over shortest
+SURPRISING = 0.5  # deviations taken off the objective's mean by every other descent
+WORTHWHILE = 1e-4  # gain of the objective, or of the violation, relative
+SMALLEST = 0.02  # mean edge of the brick, in box widths; a smaller one begins anew elsewhere
+FEW_DIMENSIONS, EVERY_FEW, EVERY_MANY = 6, 2, 4  # one draw in so many looks at the whole box
+INITIAL, SEARCHING = "initial", "scbo"
+
+
+@dataclass(frozen=True)
+class Scbo(AbstractStrategy):
+    """Batches of points: one descended to, the others drawn.
+
+    Attributes
+    ----------
+    approximate
+        Cheap approximation of the objective, (k, dimension) to (k,); None when there is
+        none. Whether and how far it is believed is decided by leave-one-out errors.
+    given
+        Points to evaluate first, before Sobol's.
+    initial
+        Points of the initial design, the given ones included, and of each restart's;
+        None is dimension + 2, or one batch if that is more.
+    batch
+        Points proposed at once, none of which knows the others' results. With 1,
+        descents and draws take turns.
+    model_size
+        At most so many evaluations, mostly the nearest, enter the processes: a proposal
+        after 1000 evaluations takes no longer than one after 200.
+    patience
+        Batches without a better point that halve the brick; None is half the
+        dimension over the batch, at least 3.
+    separation
+        No point is proposed within this Euclidean distance of an earlier one.
+    tolerance
+        Violation up to which a constraint counts as satisfied.
+    """
+
+    dimension: int
+    approximate: Callable[[Points], Float[np.ndarray, " points"]] | None = None
+    given: tuple[tuple[float, ...], ...] = ()
+    initial: int | None = None
+    batch: int = 1
+    model_size: int = 192
+    patience: int | None = None
+    separation: float = 1e-6
+    tolerance: float = 0.0
+
+    def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
+        """The next point of the batch at hand; when it is used up, the first of a new one."""
+        queue = memory.get("ahead", [])
+        if queue:
+            kept = {**memory, "ahead": queue[1:]}
+            return Proposal(np.array(queue[0], dtype=float), memory["phase"], kept)
+        with one_linear_algebra_thread():
+            points, kept = self._batch(history, memory, seed)
+        rest = [point.tolist() for point in points[1:]]
+        return Proposal(points[0], kept["phase"], {**kept, "ahead": rest})
+
+    def _batch(
+        self, history: Sequence[Evaluation], memory: Memory, seed: int
+    ) -> tuple[list[Point], Memory]:
+        trial = len(history)
+        since, region = memory.get("since", 0), self._region(history, memory)
+        if region.collapses > memory.get("collapses", 0):
+            since, memory = trial, {"learned": memory["learned"]}
+        missing = self._initial(trial) - (trial - since)
+        learnable = sum(not one.failed for one in history[since:])
+        kept = {
+            "since": since,
+            "begun": trial,
+            "collapses": region.collapses,
+            "region": region.to_memory(),
+            **({"learned": memory["learned"]} if "learned" in memory else {}),
+        }
+        if missing > 0 or learnable < FEWEST_TO_LEARN_FROM:
+            return self._design(history, max(missing, self.batch), seed), {**kept, "phase": INITIAL}
+        best = min(history[since:], key=lambda one: one.rank(self.tolerance))
+        surrogate = self._surrogate(history, best, memory)
+        kept["learned"] = surrogate.learned.to_memory()
+        points = self._points(history, surrogate, region, best.point, seed)
+        return points, {**kept, "phase": SEARCHING}
+
+    def _initial(self, trial: int) -> int:
+        wanted = self.dimension + 2 if self.initial is None else self.initial
+        return max(wanted, self.batch, len(self.given), FEWEST_TO_LEARN_FROM)
+
+    def _design(self, history: Sequence[Evaluation], count: int, seed: int) -> list[Point]:
+        """Points that lean on no evaluation; a restart goes on in the same Sobol sequence."""
+        places = range(len(history), len(history) + count)
+        wanted = [initial_point(place, self.dimension, seed, self.given) for place in places]
+        found: list[Point] = []
+        for point in wanted:
+            found.append(self._apart([point], history, found, seed))
+        return found
+
+    def _region(self, history: Sequence[Evaluation], memory: Memory) -> TrustRegion:
+        """The brick after what the last batch brought."""
+        if memory.get("phase") != SEARCHING:
+            kept = memory.get("region")
+            return TrustRegion(**kept) if kept else TrustRegion()
+        since, begun = memory["since"], memory["begun"]
+        infeasible, value = min(one.rank(self.tolerance) for one in history[since:begun])
+        batch = history[begun:]
+        # A gain that is none to speak of does not keep a brick from collapsing.
+        worth = (infeasible, value - WORTHWHILE * abs(value))
+        improved = min(one.rank(self.tolerance) for one in batch) < worth
+        patience = self.patience or max(3, -(-self.dimension // (2 * self.batch)))
+        return TrustRegion(**memory["region"]).after_step(
+            improved, batch[0].feasible(self.tolerance), patience, SMALLEST
+        )
+
+    def _surrogate(
+        self, history: Sequence[Evaluation], best: Evaluation, memory: Memory
+    ) -> Surrogate:
+        dataset = collect(history, best.point)
+        if self.approximate is None:
+            dataset = dataset.without_approximation()
+        before = Learned.from_memory(memory["learned"]) if "learned" in memory else None
+        centre = float(dataset.objective[best.trial])
+        near = dataset.nearest(self.model_size)
+        return build(near, learn(near, len(history), centre, before), self.approximate)
+
+    def _points(
+        self,
+        history: Sequence[Evaluation],
+        surrogate: Surrogate,
+        trusted: TrustRegion,
+        centre: Point,
+        seed: int,
+    ) -> list[Point]:
+        trial = len(history)
+        region = trusted.around(centre, self._shape(surrogate.learned))
+        turn, drawn_only = divmod(trial, 2) if self.batch == 1 else (trial // self.batch, 0)
+        found: list[Point] = []
+        if not drawn_only:
+            criterion = Criterion(SURPRISING * (turn % 2), trusted.caution)
+            suggestions = suggest(
+                surrogate, region, criterion, centre, generator(seed, trial), starts=1
+            )
+            found.append(self._apart([each.point for each in suggestions], history, found, seed))
+        if len(found) < self.batch:
+            found += self._drawn(history, surrogate, region, centre, found, turn, seed)
+        return found
+
+    def _drawn(
+        self,
+        history: Sequence[Evaluation],
+        surrogate: Surrogate,
+        region: Region,
+        centre: Point,
+        before: Sequence[Point],
+        turn: int,
+        seed: int,
+    ) -> list[Point]:
+        """The best points of draws: most in the brick, every so many in the whole box."""
+        random = generator(seed, len(history), 2)
+        count = self.batch - len(before)
+        period = EVERY_FEW if self.dimension <= FEW_DIMENSIONS else EVERY_MANY
+        anywhere = (turn * count + np.arange(count)) % period == period - 1
+        found: list[Point] = []
+        for place in (Region.everything(self.dimension), region):
+            wanted = int(np.sum(anywhere if place is not region else ~anywhere))
+            if wanted == 0:
+                continue
+            candidates = spread_candidates(place, centre, random, CANDIDATES)
+            many = draws(surrogate, candidates, random, wanted)
+            scale = np.maximum(np.std(many, axis=(0, 1)), 1e-300)
+            for drawn in many:
+                ranked = candidates[best_of_draw(drawn, scale)]
+                found.append(self._apart(list(ranked), history, [*before, *found], seed))
+        return found
+
+    def _shape(self, learned: Learned) -> Point:
+        """Edges of the brick over their geometric mean: as the lengthscales of the objective."""
+        fitted = learned.objective[learned.mean]
+        lengthscales = np.exp(np.array(fitted.parameters[:-1]))
+        along = np.sqrt(np.sum((fitted.axes_array() / lengthscales) ** 2, axis=1))
+        shape = np.exp(np.mean(np.log(along))) / along
+        return np.clip(shape, 1 / MOST_STRETCHED, MOST_STRETCHED)
+
+    def _apart(
+        self,
+        wanted: Sequence[Point],
+        history: Sequence[Evaluation],
+        batch: Sequence[Point],
+        seed: int,
+    ) -> Point:
+        """The first that is not where something was evaluated or will be; else a random one."""
+        taken = np.array([*(one.point for one in history), *batch]).reshape(-1, self.dimension)
+        for point in wanted:
+            if apart(point, taken, self.separation):
+                return point
+        random = generator(seed, len(history) + len(batch), 1)
+        around = wanted[0]
+        for width in 2.0 ** np.arange(-16, 1):
+            step = width * (random.random(self.dimension) - 0.5)
+            point = np.clip(around + step, 0.0, 1.0)
+            if apart(point, taken, self.separation):
+                return point
+        return random.random(self.dimension)
