@@ -62,7 +62,7 @@ def draw(rows: list[dict], path: Path) -> None:
     low = 0.0
     ends.sort()
     for time, error, name, colour in ends:
-        height = max(time, 1.28 * low)
+        height = max(time, 1.4 * low)
         low = height
         axes.annotate(
             name,
