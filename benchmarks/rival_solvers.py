@@ -26,8 +26,8 @@ from camring.physics.pressure import pressure_slope
 from camring.physics.system import System
 
 SCIPY_TOLERANCES = {
-    "Radau": (1e-3, 1e-5, 1e-7, 1e-9),
-    "BDF": (1e-3, 1e-5, 1e-7, 1e-9),
+    "Radau": (1e-3, 1e-5, 1e-7),
+    "BDF": (1e-3, 1e-5, 1e-7),
     "LSODA": (1e-3, 1e-5, 1e-7, 1e-9, 1e-11),
 }
 SUNDIALS_TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)

@@ -5,8 +5,8 @@
 
 One motor, one operating point: model.md section 3. The error is the largest difference of
 pressure at 2000 angles from SciPy's LSODA between kinks at tolerance 1e-11, over the
-supply-return difference. Times are of warm programs, solving only, the fastest of some
-rounds in which all solvers take turns. `benchmarks/results/work_precision.json` has every
+supply-return difference. Times are of warm programs, solving only: processor time, all
+threads added up, the least of some rounds in which all solvers take turns. `benchmarks/results/work_precision.json` has every
 setting, docs/pictures/work_precision.svg is the picture, docs/notes/work_precision.md the
 reading of both.
 """
@@ -52,14 +52,14 @@ WANTED = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 OURS = "camring, one motor"
 BATCH = f"camring, {LANES} in lanes"
 ENOUGH = 1.0
-"""Seconds after which a setting takes no more turns."""
+"""Processor seconds after which a setting takes no more turns."""
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--motor", type=Path, default=MOTOR, help="a motor file, first rung")
     parser.add_argument("--rounds", type=int, default=7, help="turns of each solver")
-    kinds = ("ours", "lanes", "scipy", "casadi", "diffrax")
+    kinds = ("scipy", "casadi", "diffrax", "lanes", "ours")
     parser.add_argument("--only", nargs="+", choices=kinds, default=kinds)
     asked = parser.parse_args()
     keep_programs()
@@ -179,7 +179,7 @@ def lane_runs(system: System, many: np.ndarray, angles: np.ndarray) -> Iterator[
 
 
 def measured(runs: list[Run], truth: np.ndarray, scale: float, rounds: int) -> list[dict]:
-    """One row for each run: its errors, and its times of a design in s."""
+    """One row for each run: its errors, and its processor times of a design in s."""
     rows = []
     for run in runs:
         print(run.solver, run.setting, file=sys.stderr, flush=True)
@@ -197,9 +197,9 @@ def measured(runs: list[Run], truth: np.ndarray, scale: float, rounds: int) -> l
     for _ in range(rounds):
         for run, taken in zip(runs, times, strict=True):
             if sum(taken) * run.designs < ENOUGH:
-                started = time.perf_counter()
+                started = time.process_time()
                 run.solve()
-                taken.append((time.perf_counter() - started) / run.designs)
+                taken.append((time.process_time() - started) / run.designs)
     for row, taken in zip(rows, times, strict=True):
         row.update(seconds=min(taken), median_seconds=statistics.median(taken), turns=len(taken))
     return rows

@@ -74,7 +74,7 @@ def draw(rows: list[dict], path: Path) -> None:
             arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.5, "alpha": 0.6},
         )
     axes.set_xlabel("largest error of pressure, of the supply–return difference (finer →)")
-    axes.set_ylabel("milliseconds for one design")
+    axes.set_ylabel("milliseconds of a processor for one design")
     axes.set_title("Periodic chamber pressure: what a digit costs", loc="left")
     axes.set_xticks([10.0**-k for k in range(2, 11)])
     axes.grid(True, which="major", color="#dddddd", linewidth=0.7)
