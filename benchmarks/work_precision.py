@@ -6,8 +6,9 @@
 One motor, one operating point: model.md section 3. The error is the largest difference of
 pressure at 2000 angles from SciPy's LSODA between kinks at tolerance 1e-11, over the
 supply-return difference. Times are of warm programs, solving only: processor time, all
-threads added up, the least of some rounds in which all solvers take turns. `benchmarks/results/work_precision.json` has every
-setting, docs/pictures/work_precision.svg is the picture, docs/notes/work_precision.md the
+threads added up, the least of some rounds in which all solvers take turns.
+`benchmarks/results/work_precision.json` has every setting,
+docs/pictures/work_precision.svg is the picture, docs/notes/work_precision.md the
 reading of both.
 """
 
