@@ -10,7 +10,7 @@ STYLES = {
     "CasADi IDAS": ("#56B4E9", "v", "-"),
     "diffrax Kvaerno3": ("#009E73", "D", "-"),
     "diffrax Kvaerno5": ("#009E73", "P", "-"),
-    "diffrax Kvaerno5, 256 under vmap": ("#009E73", "P", "--"),
+    "diffrax Kvaerno3, 256 under vmap": ("#009E73", "D", "--"),
     "SciPy LSODA": ("#000000", "o", "-"),
     "SciPy Radau": ("#CC79A7", "X", "-"),
     "SciPy BDF": ("#7F7F7F", "h", "-"),
