@@ -100,6 +100,11 @@ def summarise(cycle: Cycle, highest_order: int = 600) -> Metrics:
     spring = oscillator(cycle, samples.mean(piston.chamber.volume))
     least_pressure = minimum(corners.chamber_pressure)
     most_pressure = maximum(corners.chamber_pressure)
+    swing = (
+        jnp.zeros(())  # the set pressure, to the last bit
+        if cycle.gallery is None
+        else maximum(corners.supply_pressure) - minimum(corners.supply_pressure)
+    )
     starved = cavitation(cycle, corners.chamber_pressure, least_pressure)
 
     return Metrics(
@@ -131,7 +136,7 @@ def summarise(cycle: Cycle, highest_order: int = 600) -> Metrics:
         power_residual=power.residual,
         min_pressure=least_pressure,
         max_pressure=most_pressure,
-        supply_pressure_swing=maximum(corners.supply_pressure) - minimum(corners.supply_pressure),
+        supply_pressure_swing=swing,
         pressure_overshoot=jnp.maximum(most_pressure - point.supply_pressure, 0),
         pressure_undershoot=jnp.maximum(point.return_pressure - least_pressure, 0),
         air_release_margin=starved.air_release_margin,
