@@ -37,6 +37,12 @@ GRID = 2.0**-28  # box widths; nearer points share one evaluation, or vain steps
 SOBOL_STARTS = 8
 ROUNDS = 3  # of one descent: after a round that did not converge it begins anew where it is
 STEPS = 100
+PATIENCE = 60  # evaluations of one descent without a gain; then it has ended
+PROGRESS = 1e-6  # of the objective, or of the violation: what counts as a gain
+
+
+class _Stalled(Exception):
+    """A descent goes on without getting anywhere."""
 
 
 class _Unknown(Exception):
@@ -149,7 +155,7 @@ class GradientSearch(AbstractStrategy):
         # The objectives of the initial design do not change while a descent goes on.
         usable = [each for each in history[: self.initial] if not each.failed]
         scale = 1 / max(min(abs(each.objective) for each in usable), np.finfo(float).tiny)
-        path = _Path(known, self.slopes, scale, history[start])
+        path = _Path(known, self.slopes, scale, history[start], self.tolerance)
         try:
             for _ in range(ROUNDS):
                 before = path.best(self.tolerance)
@@ -161,6 +167,8 @@ class GradientSearch(AbstractStrategy):
                     self._towards_feasible(path, best.point)
         except _Unknown as unknown:
             return unknown.point
+        except _Stalled:
+            pass
         return path.best(self.tolerance)
 
     def _round(self, path: "_Path", start: Point) -> bool:
@@ -207,8 +215,11 @@ class _Path:
         slopes: Slopes,
         scale: float,
         start: Evaluation,
+        tolerance: float,
     ) -> None:
         self._known, self._slopes, self._scale = known, slopes, scale
+        self._tolerance = tolerance
+        self._lead, self._led_at = start.rank(tolerance), 0
         self.seen: list[Evaluation] = [start]
 
     def best(self, tolerance: float) -> Evaluation:
@@ -224,7 +235,17 @@ class _Path:
             raise _Unknown(within)
         if found is not self.seen[-1]:
             self.seen.append(found)
+            self._require_progress(found)
         return found
+
+    def _require_progress(self, found: Evaluation) -> None:
+        """Rounding can keep SLSQP at the end of its descent for as long as it is let."""
+        group, value = found.rank(self._tolerance)
+        led, least = self._lead
+        if group < led or (group == led and value < least - PROGRESS * abs(least)):
+            self._lead, self._led_at = (group, value), len(self.seen)
+        elif len(self.seen) - self._led_at > PATIENCE:
+            raise _Stalled
 
     def objective(self, point: Point) -> float:
         """Scaled to about one at a good design; a failed one is worse than all before it."""
