@@ -22,6 +22,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from stopwatch import wall_times
 
 import camring
 from camring.interfaces.many import CHUNK, evaluate_many
@@ -45,14 +46,7 @@ EXTREMES = ("max_pressure", "max_contact_stress")
 
 
 def fastest(action: Callable[[], object], repeats: int = 3) -> float:
-    """Shortest wall time, after one run that compiles."""
-    jax.block_until_ready(action())
-    times = []
-    for _ in range(repeats):
-        started = time.perf_counter()
-        jax.block_until_ready(action())
-        times.append(time.perf_counter() - started)
-    return min(times)
+    return wall_times(action, repeats)[0]
 
 
 def with_air(system: System) -> System:

@@ -11,7 +11,6 @@ import argparse
 import json
 import os
 import statistics
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -19,6 +18,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from stopwatch import wall_times
 
 import camring
 from camring.metrics.independent import independent_results
@@ -35,14 +35,7 @@ REPEATS = 9
 
 
 def seconds(action: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Median wall time, after one run that compiles."""
-    jax.block_until_ready(action())
-    times = []
-    for _ in range(repeats):
-        started = time.perf_counter()
-        jax.block_until_ready(action())
-        times.append(time.perf_counter() - started)
-    return statistics.median(times)
+    return statistics.median(wall_times(action, repeats))
 
 
 def aerated(fluid: AbstractFluid) -> AeratedFluid:

@@ -1,11 +1,10 @@
 """Where the time of one simulation goes: its stages compiled and timed one by one."""
 
-import time
 from collections.abc import Callable
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
+from stopwatch import wall_times
 
 import camring
 from camring.numerics.mesh import equidistribute, fourth_derivative_density, graded_mesh
@@ -21,14 +20,8 @@ from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
 
-def fastest(action: Callable[[], object], repeats: int = 40) -> float:
-    jax.block_until_ready(action())
-    times = []
-    for _ in range(repeats):
-        started = time.perf_counter()
-        jax.block_until_ready(action())
-        times.append(time.perf_counter() - started)
-    return min(times)
+def fastest(action: Callable[[], object]) -> float:
+    return wall_times(action, 40)[0]
 
 
 def stage_times(system: System) -> dict[str, float]:

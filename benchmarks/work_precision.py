@@ -18,7 +18,7 @@ import os
 import statistics
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -186,8 +186,11 @@ def lane_runs(system: System, many: np.ndarray, angles: np.ndarray) -> Iterator[
             fraction = (within - start[element]) / width[element]
             return np.asarray(system.fluid.pressure(horner(powers[:, element], fraction)))
 
-        ready = lambda run=run: jax.block_until_ready(run())  # noqa: E731
-        yield Run(BATCH, str(elements), ready, pressure, designs=len(many))
+        yield Run(BATCH, str(elements), partial(_ready, run), pressure, designs=len(many))
+
+
+def _ready(run: Callable[[], object]) -> object:
+    return jax.block_until_ready(run())
 
 
 def measured(runs: list[Run], truth: np.ndarray, scale: float, rounds: int) -> list[dict]:

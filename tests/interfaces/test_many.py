@@ -9,6 +9,7 @@ import pytest
 from camring.interfaces import many
 from camring.interfaces.compiled import assess
 from camring.interfaces.config import read_motor_file
+from camring.interfaces.errors import InputError
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -48,3 +49,9 @@ def test_nothing_depends_on_how_many_are_asked(motor_file, judged):
     space = motor_file.design_space
     few = many.evaluate_many(space, motor_file.system, motor_file.goal, points[-3:], threads=1)
     np.testing.assert_allclose(few.objective, found.objective[-3:], rtol=1e-6)
+
+
+@pytest.mark.parametrize("points", [np.zeros((0, 11)), np.zeros((3, 2)), np.zeros(11)])
+def test_points_of_another_shape_are_refused(motor_file, points):
+    with pytest.raises(InputError, match="give \\(designs, "):
+        many.evaluate_many(motor_file.design_space, motor_file.system, motor_file.goal, points)

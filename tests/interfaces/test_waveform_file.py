@@ -5,7 +5,6 @@ import math
 import equinox as eqx
 import h5py
 import jax.numpy as jnp
-import motors
 import numpy as np
 import pytest
 import xarray
@@ -37,19 +36,6 @@ ASKED = {
     "contact_stress",
     "torque",
 }
-
-
-@pytest.fixture(scope="module")
-def simulated():
-    case = motors.sound_case(0)
-    slow = eqx.tree_at(lambda p: p.shaft_speed, case.point, case.point.shaft_speed / 2)
-    system = System(case.motor, case.fluid, (case.point, slow))
-    run = eqx.filter_jit(simulate)
-    cycles = [
-        run(system.motor, system.fluid, point, Resolution.coarse())
-        for point in system.operating_points
-    ]
-    return system, cycles
 
 
 @pytest.fixture(scope="module")

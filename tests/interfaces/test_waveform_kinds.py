@@ -9,7 +9,6 @@ import pandas
 import pytest
 import xarray
 from scipy.io import loadmat
-from test_waveform_file import simulated  # noqa: F401
 
 from camring.interfaces.errors import InputError
 from camring.interfaces.waveform_file import RESULT, waveform_dataset, write_simulation
@@ -23,7 +22,7 @@ RESULTS = [
 
 
 @pytest.fixture(scope="module")
-def files(simulated, tmp_path_factory):  # noqa: F811
+def files(simulated, tmp_path_factory):
     folder = tmp_path_factory.mktemp("kinds")
     for ending in ("nc", "csv", "xlsx", "mat"):
         write_simulation(folder / f"out.{ending}", *simulated, RESULTS, samples=SAMPLES)
@@ -31,7 +30,7 @@ def files(simulated, tmp_path_factory):  # noqa: F811
 
 
 @pytest.fixture(scope="module")
-def dataset(simulated):  # noqa: F811
+def dataset(simulated):
     return waveform_dataset(*simulated, samples=SAMPLES, results=RESULTS)
 
 
@@ -110,7 +109,7 @@ def test_the_workbook_has_a_summary_charts_and_a_sheet_for_each_point(files, dat
     assert f"'Point 1'!$A$3:$A${SAMPLES + 2}" in chart
 
 
-def test_a_missing_extra_is_named(simulated, tmp_path, monkeypatch):  # noqa: F811
+def test_a_missing_extra_is_named(simulated, tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "xlsxwriter", None)
     with pytest.raises(InputError, match=r'pip install "camring\[excel\]"'):
         write_simulation(tmp_path / "out.xlsx", *simulated, RESULTS, samples=SAMPLES)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, get_args, get_type_hints
 
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
@@ -115,7 +116,7 @@ class Grid:
 
     def why(self, place: tuple[int, ...]) -> str:
         """The faults at one point in words; empty when sound."""
-        return Verdict(self.faults[place]).explain()  # type: ignore[arg-type]
+        return Verdict(jnp.asarray(self.faults[place])).explain()
 
 
 # Results that must not fall below zero, with what happens there.

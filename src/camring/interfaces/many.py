@@ -16,6 +16,7 @@ import jax
 import numpy as np
 from jaxtyping import Float
 
+from camring.interfaces.errors import InputError
 from camring.objective.design_space import DesignSpace
 from camring.objective.lanes import (
     designs_in_lanes,
@@ -77,8 +78,19 @@ def evaluate_many(
     -------
     NumPy arrays with a place for each design; terms and faults (operating point, design).
     A design whose `faults` are not zero has numbers that mean nothing.
+
+    Raises
+    ------
+    InputError
+        For points of another shape than (designs, coordinates), or none.
     """
     points = np.asarray(points, dtype=float)
+    if points.ndim != 2 or points.shape[1] != space.dimension or not len(points):
+        raise InputError(
+            "the points",
+            f"have the shape {points.shape}",
+            f"give (designs, {space.dimension}), a coordinate for each of {', '.join(space.names)}",
+        )
     look = look or LanesLook.search()
     judge_chunk = _in_lanes if fits(system.motor) else _one_by_one
     judged = _judged_by(judge_chunk, space, system, goal, look, chunk)

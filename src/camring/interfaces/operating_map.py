@@ -6,6 +6,7 @@ import numpy as np
 
 from camring.interfaces.batch import repeated, results_of_many
 from camring.interfaces.config import MotorFile
+from camring.interfaces.config.entries import Number, Unfit
 from camring.interfaces.config.keys import key_map
 from camring.interfaces.errors import InputError
 from camring.interfaces.grid import Axis, Grid
@@ -49,11 +50,11 @@ def operating_map(
     """
     point = point_of(file, operating_point)
     counts = point_counts(points, 2, ON_EACH_AXIS)
-    keys, system = key_map(file.choices), file.system
+    system = file.system
     speed = speed or _usual_speeds(file)
     pressure = pressure or _usual_pressures(file, point)
     axes = tuple(
-        axis(key, text, keys[key], count)  # type: ignore[arg-type]
+        axis(key, text, _number(file, key), count)
         for key, text, count in zip((SPEED, SUPPLY), (speed, pressure), counts, strict=True)
     )
     speeds, pressures = (_checked(each, file) for each in axes)
@@ -130,17 +131,21 @@ def limits_of(file: MotorFile) -> dict[str, float]:
 
 def _checked(each: Axis, file: MotorFile) -> np.ndarray:
     """The axis in SI, both ends within the limits of its key."""
-    entry = key_map(file.choices)[each.key]
+    entry = _number(file, each.key)
     for end in (each.shown.min(), each.shown.max()):
         text = f"{float(end)!r} {each.unit}".rstrip()
         try:
             entry.read(text if each.unit else float(end))
-        except Exception as error:
-            problem, way_out = getattr(error, "problem", str(error)), entry.way_out
-            raise InputError(each.key, problem, way_out) from None
-    return np.array(
-        [to_si(f"{float(v)!r} {each.unit}".rstrip(), entry.unit) for v in each.shown]  # type: ignore[attr-defined]
-    )
+        except Unfit as error:
+            raise InputError(each.key, error.problem, entry.way_out) from None
+    return np.array([to_si(f"{float(v)!r} {each.unit}".rstrip(), entry.unit) for v in each.shown])
+
+
+def _number(file: MotorFile, key: str) -> Number:
+    """What a key takes that is known to be a number."""
+    entry = key_map(file.choices)[key]
+    assert isinstance(entry, Number)
+    return entry
 
 
 def _usual_speeds(file: MotorFile) -> str:

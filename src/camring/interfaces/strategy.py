@@ -12,9 +12,8 @@ from camring.interfaces.own_evaluator import OwnEvaluator
 from camring.objective.theory import theory_designs
 from camring.search.bayesian import Bayesian
 from camring.search.gradient import GradientSearch
-from camring.search.hybrid import Hybrid, Stage
-from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy
+from camring.search.strategies import then_simplex
 
 MOST_THEORY_DESIGNS = 6
 FEWEST_TO_LEAN = 8
@@ -50,21 +49,13 @@ def strategy_for(
     if method == GRADIENT:
         assert isinstance(evaluator, MotorEvaluator), "a user's own program has no slopes"
         return GradientSearch(space.dimension, evaluator.slopes, given)
-    refinement = int(settings.refinement * budget)
-    return Hybrid(
-        (
-            Stage(
-                Bayesian(
-                    dimension=space.dimension,
-                    approximate=evaluator.approximate,
-                    given=given,
-                    initial=FEWEST_TO_LEAN if isinstance(evaluator, OwnEvaluator) else None,
-                    mode="penalised" if settings.mode == "penalised" else "separate",
-                    penalty_weight=motor_file.goal.weights.penalty,
-                    kappa=settings.kappa,
-                ),
-                budget - refinement,
-            ),
-            Stage(NelderMead(space.dimension), None),
-        )
+    learning = Bayesian(
+        dimension=space.dimension,
+        approximate=evaluator.approximate,
+        given=given,
+        initial=FEWEST_TO_LEAN if isinstance(evaluator, OwnEvaluator) else None,
+        mode="penalised" if settings.mode == "penalised" else "separate",
+        penalty_weight=motor_file.goal.weights.penalty,
+        kappa=settings.kappa,
     )
+    return then_simplex(learning, budget, settings.refinement)

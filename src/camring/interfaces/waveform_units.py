@@ -1,6 +1,5 @@
 """Units of waveforms and results: SI as programs write it, and what engineers read."""
 
-import re
 from functools import cache
 from math import pi
 from typing import Annotated, NamedTuple, get_args, get_origin, get_type_hints
@@ -68,6 +67,7 @@ def spelt_out(unit: str) -> str:
     above, *below = unit.split("/")
     parts = above.split(".")
     for each in below:
-        name, power = re.fullmatch(r"([A-Za-z]+)(\d*)", each.strip("()")).groups()  # type: ignore[union-attr]
+        name = each.strip("()").rstrip("0123456789")
+        power = each.strip("()")[len(name) :]
         parts.append(f"{name}-{power or 1}")
     return " ".join(parts)

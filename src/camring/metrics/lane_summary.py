@@ -7,7 +7,8 @@ of control radii, only the pressure is looked up, and the Fourier coefficients a
 one matrix product. Pistons are added by folding the period before it.
 """
 
-from math import gcd, pi
+from dataclasses import replace
+from math import pi
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -20,8 +21,7 @@ from camring.geometry.lane_cam import radius_around
 from camring.metrics.cavitation import cavitation
 from camring.metrics.power_balance import power_balance
 from camring.metrics.spectrum import QuadratureSamples
-from camring.metrics.stiffness import oscillator
-from camring.metrics.summary import Metrics
+from camring.metrics.summary import Measured, Metrics, results
 from camring.numerics.extremum import vertex_value
 from camring.numerics.lane_mesh import locate_in_lanes, positions
 from camring.numerics.lanes import take
@@ -30,6 +30,7 @@ from camring.numerics.radau import STAGE_INTEGRALS, STAGES, element_powers, horn
 from camring.physics.chamber import chamber_at
 from camring.physics.cycle import Cycle
 from camring.physics.lane_cycle import LaneCycle, operating_at, radial
+from camring.physics.motor import Motor
 from camring.physics.piston_state import PistonState, piston_state
 from camring.physics.pressure import pressure_slope
 
@@ -41,90 +42,47 @@ _BOOLE = np.array([14, 64, 24, 64, 28, 64, 24, 64, 14]) / 360
 def summarise_lanes(found: LaneCycle, highest_order: int = 600, oversampling: int = 12) -> Metrics:
     """Every result of every lane's cycle, leaves (lane,)."""
     cycle, cam = found.cycle, found.cam
-    motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
+    motor, point = cycle.motor, cycle.point
     samples = _at_collocation_points(found)
     piston = samples.piston
     around = _at_fixed_places(cycle, highest_order, oversampling)
+    corners = _with_starts(cycle, piston)
 
-    pistons, speed, drop = motor.pistons, point.shaft_speed, point.pressure_drop
-    power = power_balance(cycle, samples)
-    mean_torque = pistons * samples.mean(piston.torque)
-    mean_gauge = samples.mean(piston.chamber_pressure) - point.return_pressure
-    amount_flow = power.supply_flow * fluid.content(point.supply_pressure)
-
-    phases = pistons // gcd(pistons, motor.cam.repeats)
+    per_amount = 1 / cycle.fluid.content(point.supply_pressure)
     orders = highest_order // motor.cam.repeats
-    torque = _folded(around.torque, phases, pistons)
-    torque_power = _power(torque, orders // phases)
-    flow_power = _power(_folded(around.supply_flow, phases, pistons), orders // phases)
-    pressure_power = _power(around.chamber_pressure, orders)
-    torque_ripple = jnp.sqrt(torque_power) / jnp.abs(mean_torque)
-    pressure_ripple = jnp.sqrt(pressure_power) / jnp.abs(mean_gauge)
-    flow_ripple = jnp.sqrt(flow_power) / jnp.abs(amount_flow)
-    peak_to_peak = _largest_sample(torque) + _largest_sample(-torque)
+    of_sum = orders // motor.distinct_phases
+    torque = _of_all_pistons(around.torque, motor)
+    flow = _of_all_pistons(around.supply_flow * per_amount, motor)
 
     lowest, highest = cam.extremes()
-    stroke = highest - lowest
-    displacement = pistons * motor.cam.repeats * cam.rises() * motor.piston.area
-    ideal_torque = drop * displacement / (2 * pi)
-    spring = oscillator(cycle, samples.mean(piston.chamber.volume))
-    corners = _with_starts(cycle, piston)
-    pressure = corners.chamber_pressure
-    most_pressure, least_pressure = _largest(pressure), -_largest(-pressure)
-    starved = cavitation(cycle, pressure, least_pressure, PLACES)
-    zero = jnp.zeros_like(stroke)
-    third = _round(cam.radius.third, _BOOLE)
-
-    return Metrics(
-        mean_torque=mean_torque,
-        torque_ripple=torque_ripple,
-        torque_ripple_true_rms=jnp.sqrt(2) * torque_ripple,
-        torque_ripple_peak_to_peak=peak_to_peak / jnp.abs(mean_torque),
-        pressure_ripple=pressure_ripple,
-        pressure_ripple_true_rms=jnp.sqrt(2) * pressure_ripple,
-        flow_ripple=flow_ripple,
-        flow_ripple_true_rms=jnp.sqrt(2) * flow_ripple,
-        displacement=displacement,
-        stroke=stroke,
-        min_lift=lowest - cycle.reference_radius,
-        max_lift=highest - cycle.reference_radius,
-        ideal_torque=ideal_torque,
-        supply_flow=power.supply_flow,
-        efficiency=power.output_power / power.input_power,
-        volumetric_efficiency=displacement * speed / (2 * pi * power.supply_flow),
-        hydromechanical_efficiency=mean_torque / ideal_torque,
-        input_power=power.input_power,
-        output_power=power.output_power,
-        line_loss=zero,
-        throttling_loss=power.throttling_loss,
-        leakage_loss=power.leakage_loss,
-        friction_loss=power.friction_loss,
-        compression_loss=power.compression_loss,
-        power_residual=power.residual,
-        min_pressure=least_pressure,
-        max_pressure=most_pressure,
+    zero = jnp.zeros_like(lowest)
+    least_pressure = -_largest(-corners.chamber_pressure)
+    measured = Measured(
+        power=replace(power_balance(cycle, samples), line_loss=zero),
+        mean_torque=motor.pistons * samples.mean(piston.torque),
+        mean_gauge_pressure=samples.mean(piston.chamber_pressure) - point.return_pressure,
+        torque_power=_power(torque, of_sum),
+        pressure_power=_power(around.chamber_pressure, orders),
+        flow_power=_power(flow, of_sum),
+        torque_span=_largest_sample(torque) + _largest_sample(-torque),
+        lowest_radius=lowest,
+        highest_radius=highest,
+        rises=motor.cam.repeats * cam.rises(),
+        mean_volume=samples.mean(piston.chamber.volume),
+        lowest_pressure=least_pressure,
+        highest_pressure=_largest(corners.chamber_pressure),
         supply_pressure_swing=zero,
-        pressure_overshoot=jnp.maximum(most_pressure - point.supply_pressure, 0),
-        pressure_undershoot=jnp.maximum(point.return_pressure - least_pressure, 0),
-        air_release_margin=starved.air_release_margin,
-        vapour_margin=starved.vapour_margin,
-        share_below_air_release=starved.share_below_air_release,
-        share_below_vapour=starved.share_below_vapour,
-        min_contact_force=-_largest(-corners.force),
-        max_contact_stress=_largest(corners.contact_stress),
-        min_undercut_factor=-_largest_part(-undercut_factor(cam.radius, motor.roller.radius)),
-        max_pressure_angle=_largest_part(jnp.abs(pressure_angle(cam.radius))),
-        max_velocity=jnp.abs(speed) * _largest_part(jnp.abs(cam.radius.first)),
-        max_acceleration=speed**2 * _largest_part(jnp.abs(cam.radius.second)),
-        max_jerk=jnp.abs(speed) ** 3 * _largest_part(jnp.abs(cam.radius.third)),
-        min_volume=motor.dead_volume + motor.piston.area * (lowest - cycle.reference_radius),
-        hydraulic_stiffness=spring.stiffness,
-        natural_frequency=spring.natural_frequency,
-        damping_ratio=spring.damping_ratio,
-        jerk_objective=third / (stroke * motor.lobes**3) ** 2,
-        spectral_pressure=pressure_power / drop**2,
-        spectral_torque=torque_power / ideal_torque**2,
+        cavitation=cavitation(cycle, corners.chamber_pressure, least_pressure, PLACES),
+        least_force=-_largest(-corners.force),
+        most_stress=_largest(corners.contact_stress),
+        least_undercut=-_largest_part(-undercut_factor(cam.radius, motor.roller.radius)),
+        most_tilt=_largest_part(jnp.abs(pressure_angle(cam.radius))),
+        steepest=_largest_part(jnp.abs(cam.radius.first)),
+        most_bent=_largest_part(jnp.abs(cam.radius.second)),
+        most_jerky=_largest_part(jnp.abs(cam.radius.third)),
+        mean_square_jerk=_mean_square(cam.radius.third),
     )
+    return results(cycle, measured)
 
 
 class Waves(NamedTuple):
@@ -166,7 +124,7 @@ def _with_starts(cycle: Cycle, piston: PistonState) -> Corners:
 
 def _at_fixed_places(cycle: Cycle, highest_order: int, oversampling: int) -> Waves:
     motor, orbit, period = cycle.motor, cycle.orbit, cycle.motor.cam.period
-    phases = motor.pistons // gcd(motor.pistons, motor.cam.repeats)
+    phases = motor.distinct_phases
     wanted = max(oversampling * (highest_order // motor.cam.repeats), 256)
     count = phases * -(-wanted // phases)
     lanes = orbit.node_state.shape[-1]
@@ -183,12 +141,13 @@ def _at_fixed_places(cycle: Cycle, highest_order: int, oversampling: int) -> Wav
     return optimization_barrier(Waves(*(getattr(piston, name) for name in Waves._fields)))
 
 
-def _folded(
-    wave: Float[Array, "place lane"], phases: int, pistons: int
+def _of_all_pistons(
+    wave: Float[Array, "place lane"], motor: Motor
 ) -> Float[Array, "place_of_phase lane"]:
     """All pistons together, over the period that their sum has."""
+    phases = motor.distinct_phases
     parts = wave.reshape(phases, -1, wave.shape[-1])
-    return pistons // phases * jnp.sum(parts, axis=0)
+    return motor.pistons // phases * jnp.sum(parts, axis=0)
 
 
 def _power(wave: Float[Array, "place lane"], orders: int) -> Float[Array, " lane"]:
@@ -210,9 +169,9 @@ def _largest_part(samples: Float[Array, "point span lane"]) -> Float[Array, " la
     return jnp.max(vertex_value(samples[:-2], samples[1:-1], samples[2:]), axis=(0, 1))
 
 
-def _round(samples: Float[Array, "point span lane"], rule: np.ndarray) -> Float[Array, " lane"]:
-    """Mean square round the cam, by a rule for each span."""
-    return jnp.mean(jnp.tensordot(jnp.asarray(rule), samples**2, axes=1), axis=0)
+def _mean_square(samples: Float[Array, "point span lane"]) -> Float[Array, " lane"]:
+    """Round the cam, by Boole's rule in each span."""
+    return jnp.mean(jnp.tensordot(jnp.asarray(_BOOLE), samples**2, axes=1), axis=0)
 
 
 def _largest(values: Float[Array, "4 element lane"]) -> Float[Array, " lane"]:

@@ -39,15 +39,15 @@ class Task:
     slopes: Slopes | None = None
 
 
+def then_simplex(learning: Bayesian, budget: int, share: float = SHARE_OF_REFINEMENT) -> Hybrid:
+    """A Bayesian search whose last share of the budget refines its best point by a simplex."""
+    first = max(budget - int(share * budget), len(learning.given))
+    return Hybrid((Stage(learning, first), Stage(NelderMead(learning.dimension), None)))
+
+
 def _bayesian(task: Task) -> AbstractStrategy:
     learning = Bayesian(task.dimension, approximate=task.approximate, given=task.given)
-    refinement = int(SHARE_OF_REFINEMENT * task.budget)
-    return Hybrid(
-        (
-            Stage(learning, max(task.budget - refinement, len(task.given))),
-            Stage(NelderMead(task.dimension), None),
-        )
-    )
+    return then_simplex(learning, task.budget)
 
 
 def _nelder_mead(task: Task) -> AbstractStrategy:
