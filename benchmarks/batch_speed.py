@@ -25,6 +25,8 @@ import numpy as np
 from stopwatch import wall_times
 
 import camring
+from camring.interfaces.compiled import slopes as slopes_alone
+from camring.interfaces.compiled import solve
 from camring.interfaces.many import CHUNK, evaluate_many
 from camring.metrics.independent import independent_results
 from camring.metrics.lane_summary import summarise_lanes
@@ -104,6 +106,11 @@ def main() -> None:
     for name, found in errors.items():
         print(f"| {name} | " + " | ".join(found) + " |")
 
+    off = slope_errors(space, system, goal, points[:8])
+    print("\n| slopes of eight designs | of the objective's largest, worst |\n|---|---|")
+    for name, value in off.items():
+        print(f"| {name} | {value:.1e} |")
+
     growth = {}
     for count in (CHUNK, 4 * CHUNK, 16 * CHUNK, 64 * CHUNK):
         many = np.resize(points, (count, space.dimension))
@@ -120,7 +127,7 @@ def main() -> None:
         rows["GiB at most, a million designs"] = most
         print(f"| 1,000,000 | {growth[len(many)]:.3g} |\n\n{most:.2f} GiB at most")
     RESULTS.mkdir(exist_ok=True)
-    written = {"seconds": rows, "errors": errors, "growth": growth}
+    written = {"seconds": rows, "errors": errors, "slopes": off, "growth": growth}
     (RESULTS / "batch_speed.json").write_text(json.dumps(written, indent=1) + "\n")
 
 
@@ -154,6 +161,26 @@ def solved(designs: System, lanes: int = 64) -> float:
     look = LanesLook.search()
     solve, total = eqx.filter_jit(solve_designs), eqx.filter_jit(summarise_lanes)
     return fastest(lambda: total(solve(designs, look)[0], 600, look.oversampling), 5) / lanes
+
+
+def slope_errors(
+    space: DesignSpace, system: System, goal: Goal, points: np.ndarray
+) -> dict[str, float]:
+    """Largest difference of the objective's slopes from those of each design by itself."""
+    alone = [
+        slopes_alone(space, system, at, solve(space.apply(system, at), goal), goal).objective
+        for at in points
+    ]
+    errors = {}
+    for name, look in LOOKS.items():
+        found = eqx.filter_jit(solve_designs)(designs_in_lanes(space, system, points), look)
+        run = eqx.filter_jit(slopes_of_designs)
+        lanes = run(space, system, jnp.asarray(points), found, goal, look).objective
+        errors[name] = max(
+            float(np.max(np.abs(lanes[:, place] - one)) / np.max(np.abs(one)))
+            for place, one in enumerate(alone)
+        )
+    return errors
 
 
 def accuracy(

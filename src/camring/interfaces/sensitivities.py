@@ -9,12 +9,12 @@ import numpy as np
 from jaxtyping import Float
 
 from camring.interfaces.compiled import judge_solved, slopes_with_results, solve
-from camring.interfaces.config import MotorFile, missing_design_space, read_motor_file
+from camring.interfaces.config import missing_design_space, read_motor_file
 from camring.interfaces.errors import CamringError, InputError
 from camring.interfaces.evaluator import applied, outcome_of
-from camring.interfaces.record import Outcome, best_of
+from camring.interfaces.record import best_of
 from camring.interfaces.study_folder import StudyFolder
-from camring.interfaces.trade_off import WORST
+from camring.interfaces.trade_off import shares_of
 from camring.objective.slopes import results_used
 from camring.search.multipliers import multipliers
 
@@ -90,7 +90,8 @@ def sensitivities(motor: str | Path) -> Sensitivities:
         raise CamringError(f"There are no slopes: {outcome.failure}.")
     names = [name for name in RESULTS if name in results_used(goal)]
     found, of_results = jax.device_get(slopes_with_results(space, file.system, point, solved, goal))
-    shares = {name: _shares(file, outcome, name) for name in names}
+    values = {name: np.array([each[name] for each in outcome.results]) for name in names}
+    shares = {name: shares_of(file.system, name, values[name]) for name in names}
     slopes = {"objective": np.asarray(found.objective)}
     for name in names:
         slopes[name] = shares[name] @ np.stack([each[name] for each in of_results])
@@ -107,9 +108,7 @@ def sensitivities(motor: str | Path) -> Sensitivities:
         place=place,
         source=source,
         objective=outcome.physical_objective,
-        results={
-            name: float(shares[name] @ [each[name] for each in outcome.results]) for name in names
-        },
+        results={name: float(shares[name] @ values[name]) for name in names},
         variables=space.names,
         per_variable={name: SHARE * each for name, each in slopes.items()},
         margins={name: -value for name, value in outcome.constraints.items()},
@@ -120,15 +119,6 @@ def sensitivities(motor: str | Path) -> Sensitivities:
         },
         left=left,
     )
-
-
-def _shares(file: MotorFile, outcome: Outcome, name: str) -> Float[np.ndarray, " point"]:
-    """How much each operating point counts in a result."""
-    if name in WORST:
-        worst = int(np.argmax([each[name] for each in outcome.results]))
-        return np.eye(len(outcome.results))[worst]
-    weights = np.array([float(each.weight) for each in file.system.operating_points])
-    return weights / weights.sum()
 
 
 def _best_of_study(place: Path) -> tuple:

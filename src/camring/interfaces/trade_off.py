@@ -25,6 +25,7 @@ from camring.interfaces.record import Outcome
 from camring.interfaces.validation import INDEPENDENT, look_again
 from camring.objective.design_space import DesignSpace
 from camring.physics.resolution import Resolution
+from camring.physics.system import System
 from camring.search.front import Front, FrontProblem, trace_front
 from camring.search.pareto import box_of, evenly_spread, hypervolume, non_dominated
 from camring.search.sampling import generator, sobol
@@ -58,6 +59,16 @@ STARTS = 12
 FINER_AGREEMENT = 1e-3  # of a result, relative, between search and finer resolution
 INDEPENDENT_AGREEMENT = 1e-3
 MARGIN = 0.1  # of the front's width beyond its worst corner: where volume is counted from
+
+
+def shares_of(
+    system: System, name: str, values: Float[np.ndarray, " point"]
+) -> Float[np.ndarray, " point"]:
+    """How much of a result each operating point decides: see `WORST`."""
+    if name in WORST:
+        return np.eye(len(values))[int(np.argmax(values))]
+    weights = np.array([float(each.weight) for each in system.operating_points])
+    return weights / weights.sum()
 
 
 class NoFront(CamringError):
@@ -217,15 +228,10 @@ class _Traded:
         self.file, self.names = file, names
         self.space: DesignSpace = file.design_space
         self.senses = np.array([SENSES[name] for name in names], dtype=float)
-        weights = np.array([float(each.weight) for each in file.system.operating_points])
-        self.weights = weights / weights.sum()
         self._here: tuple[bytes, Solved] | None = None
 
     def shares(self, name: str, values: Float[np.ndarray, " point"]) -> Float[np.ndarray, " point"]:
-        """How much of a result each operating point decides."""
-        if name in WORST:
-            return np.eye(len(values))[int(np.argmax(values))]
-        return self.weights
+        return shares_of(self.file.system, name, values)
 
     def summed(self, results: Sequence[Mapping]) -> Float[np.ndarray, " result"]:
         """One number for each result from those of all operating points, SI."""
