@@ -49,8 +49,8 @@ def test_a_folder_that_is_there(tmp_path):
 
 
 def test_maxima_count_at_the_worst_point_and_means_by_weight():
-    model = _Traded(parse_motor_file(SOUND), ("max_contact_stress", "efficiency"))
-    model.weights = np.array([0.75, 0.25])
+    text = SOUND.replace("weight = 0.6", "weight = 0.75").replace("weight = 0.4", "weight = 0.25")
+    model = _Traded(parse_motor_file(text), ("max_contact_stress", "efficiency"))
     results = [
         {"max_contact_stress": 2.0, "efficiency": 0.8},
         {"max_contact_stress": 1.0, "efficiency": 0.4},

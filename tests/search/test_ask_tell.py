@@ -11,6 +11,8 @@ from camring.search.problem import Problem, Stop
 from camring.search.strategies import STRATEGIES, Task, strategy_named
 
 BUDGET = 12
+ENOUGH = {"cma-es": 120}
+"""Evaluations to 0.01 in two dimensions; pycma's median after 60 is 0.016, ours 0.018."""
 
 
 def bayesian():
@@ -85,8 +87,9 @@ def test_every_strategy_is_had_by_its_name(name):
     def evaluate(points):
         return [(float(np.sum((x - centre) ** 2)), np.zeros(0), np.nan, None) for x in points]
 
-    task = Task(2, 60, slopes=lambda point: (2 * (point - centre), np.zeros((0, 2))))
-    found = minimise(Problem(2, 0, evaluate), strategy_named(name, task), 60)
+    budget = ENOUGH.get(name, 60)
+    task = Task(2, budget, slopes=lambda point: (2 * (point - centre), np.zeros((0, 2))))
+    found = minimise(Problem(2, 0, evaluate), strategy_named(name, task), budget)
     np.testing.assert_allclose(found.best.point, centre, atol=0.01)
 
 
