@@ -1,6 +1,6 @@
 """Where the time of many designs side by side goes: its stages compiled and timed apart.
 
-    python benchmarks/lane_stages.py [--lanes 64]
+    python benchmarks/lane_stages.py [--lanes 64] [--air]
 
 Random designs of the wheel motor at search resolution. Processor time of all threads
 together, the least of 25; stages apart cost more than together, for each has its own call.
@@ -15,6 +15,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from batch_speed import with_air
 
 import camring
 from camring.metrics import lane_summary as summary
@@ -36,7 +37,9 @@ REPEATS = 25
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--lanes", type=int, default=64)
-    lanes = parser.parse_args().lanes
+    parser.add_argument("--air", action="store_true", help="oil with air instead of the plain law")
+    asked = parser.parse_args()
+    lanes = asked.lanes
     spent: dict[str, float] = {}
 
     def timed(name: str, function: Callable, *inputs):
@@ -54,7 +57,8 @@ def main() -> None:
     space, look = file.design_space, cycles.LanesLook.search()
     points = jnp.asarray(np.random.default_rng(0).uniform(size=(lanes, space.dimension)))
     name = "design space: cam modes at equal displacement"
-    designs = timed(name, lambda at: designs_in_lanes(space, file.system, at), points)
+    system = with_air(file.system) if asked.air else file.system
+    designs = timed(name, lambda at: designs_in_lanes(space, system, at), points)
     motor, fluid, point = designs.motor, designs.fluid, designs.operating_points[0]
     period, at = motor.cam.period, jnp.asarray(STAGES)
     resolution = solver.LaneResolution(look.elements + 24, look.per_segment, look.tolerance)

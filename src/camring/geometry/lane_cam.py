@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
-from jax.lax import optimization_barrier
 from jaxtyping import Array, Float
 
 from camring.geometry.cam import RadialCam
 from camring.numerics.lanes import take
+from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import combine, horner
 from camring.numerics.spline import Jet, basis_matrix, floor_past_rounding
@@ -29,9 +29,7 @@ def radius_at(cam: RadialCam, angle: Q[Float[Array, "*grid lane"], "rad"]) -> Je
     within = position - span
     number = (span - _count(cam) * jnp.floor(span / _count(cam))).astype(jnp.int32)
     # Looked up once: the compiler would do it again for each derivative.
-    powers, within = optimization_barrier(
-        ([take(each, number) for each in _span_powers(cam)], within)
-    )
+    powers, within = computed_once(([take(each, number) for each in _span_powers(cam)], within))
     derivatives = []
     for order in range(4):
         derivatives.append(horner(powers, within) / spacing**order)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
-from jax.lax import optimization_barrier, stop_gradient
+from jax.lax import stop_gradient
 from jaxtyping import Array, Float
 
 from camring.geometry.contour import pressure_angle, undercut_factor
@@ -25,6 +25,7 @@ from camring.metrics.summary import Measured, Metrics, results
 from camring.numerics.extremum import vertex_value
 from camring.numerics.lane_mesh import locate_in_lanes, positions
 from camring.numerics.lanes import take
+from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, element_powers, horner
 from camring.physics.chamber import chamber_at
@@ -109,7 +110,7 @@ def _at_collocation_points(found: LaneCycle) -> QuadratureSamples:
     pressure = piston.chamber_pressure
     slope = pressure_slope(cycle.motor, cycle.fluid, cycle.point, chamber, pressure)
     weights = STAGE_INTEGRALS[-1][:, None, None] * mesh.width
-    return optimization_barrier(QuadratureSamples(piston, slope, weights))
+    return computed_once(QuadratureSamples(piston, slope, weights))
 
 
 def _with_starts(cycle: Cycle, piston: PistonState) -> Corners:
@@ -119,7 +120,7 @@ def _with_starts(cycle: Cycle, piston: PistonState) -> Corners:
     pairs = [
         jnp.concatenate([getattr(first, name), getattr(piston, name)]) for name in Corners._fields
     ]
-    return optimization_barrier(Corners(*pairs))
+    return computed_once(Corners(*pairs))
 
 
 def _at_fixed_places(cycle: Cycle, highest_order: int, oversampling: int) -> Waves:
@@ -132,13 +133,13 @@ def _at_fixed_places(cycle: Cycle, highest_order: int, oversampling: int) -> Wav
     # The mesh covers a period that begins at its first breakpoint.
     within = angle + jnp.where(angle < orbit.mesh.start[:1], period, 0)
     element, fraction = locate_in_lanes(orbit.mesh, within)
-    powers = optimization_barrier(orbit.coefficients)
+    powers = computed_once(orbit.coefficients)
     state = horner([take(each, element) for each in powers], fraction)
     radius = radius_around(radial(motor), np.arange(count) / count)
     chamber = chamber_at(motor, cycle.reference_radius, angle, radius)
-    state, radius, chamber = optimization_barrier((state, radius, chamber))
+    state, radius, chamber = computed_once((state, radius, chamber))
     piston = piston_state(cycle, angle, radius, chamber, state)
-    return optimization_barrier(Waves(*(getattr(piston, name) for name in Waves._fields)))
+    return computed_once(Waves(*(getattr(piston, name) for name in Waves._fields)))
 
 
 def _of_all_pistons(

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
-from jax.lax import optimization_barrier, stop_gradient
+from jax.lax import stop_gradient
 from jaxtyping import Array, Float, Int
 
 from camring.numerics.equation import Equation, Forcing
@@ -31,6 +31,7 @@ from camring.numerics.lane_mesh import (
 from camring.numerics.lanes import take
 from camring.numerics.mesh import Mesh, fourth_derivative_density
 from camring.numerics.newton import damped_newton
+from camring.numerics.once import computed_once
 from camring.numerics.periodic import Orbit, collocation_residual, extent, newton_step
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, element_powers, horner
 
@@ -84,23 +85,23 @@ def solve_lanes(
     No derivative passes through: `settle_lanes` takes a solution at hand.
     """
     breakpoints, frozen = stop_gradient(breakpoints), equation.frozen()
-    rough = optimization_barrier(graded_lanes(breakpoints, period, resolution.per_segment))
-    at_stages = optimization_barrier(frozen.forcing(rough, jnp.asarray(STAGES)))
+    rough = computed_once(graded_lanes(breakpoints, period, resolution.per_segment))
+    at_stages = computed_once(frozen.forcing(rough, jnp.asarray(STAGES)))
     stages = frozen.guess(at_stages)
     limit = resolution.limit
     stages, _ = _newton(frozen, at_stages, rough, stages, resolution.rough_tolerance, limit)
     node_state, stages = newton_step(frozen, at_stages, rough, stages)
-    powers = optimization_barrier(element_powers(node_state, stages))
+    powers = computed_once(element_powers(node_state, stages))
 
     density = fourth_derivative_density(rough, powers[3], extent(stages), period)
     layer = _layer_width(frozen, rough, node_state, period, resolution.per_segment)
-    density, layer = optimization_barrier((density, layer))
+    density, layer = computed_once((density, layer))
     mesh = equidistribute_lanes(
         rough, density, breakpoints, sharp, layer, period, resolution.elements
     )
-    mesh = optimization_barrier(mesh)
+    mesh = computed_once(mesh)
     stages = _sampled(rough, powers, positions(mesh, jnp.asarray(STAGES)))
-    at_stages = optimization_barrier(frozen.forcing(mesh, jnp.asarray(STAGES)))
+    at_stages = computed_once(frozen.forcing(mesh, jnp.asarray(STAGES)))
     stages, count = _newton(frozen, at_stages, mesh, stages, resolution.tolerance, limit)
     return _settled(frozen, at_stages, mesh, stages, count)
 
@@ -114,7 +115,7 @@ def settle_lanes(
     are carried along by the breakpoints.
     """
     mesh = follow_in_lanes(known.mesh, breakpoints, period)
-    at_stages = optimization_barrier(equation.forcing(mesh, jnp.asarray(STAGES)))
+    at_stages = computed_once(equation.forcing(mesh, jnp.asarray(STAGES)))
     stages = stop_gradient(known.stage_state)
     return _settled(equation, at_stages, mesh, stages, known.iterations)
 
@@ -127,7 +128,7 @@ def _settled(
     iterations: Int[Array, ""],
 ) -> LaneOrbit:
     node_state, stages = newton_step(equation, at_stages, mesh, stages)
-    node_state, stages = optimization_barrier((node_state, stages))
+    node_state, stages = computed_once((node_state, stages))
     rate, slope = equation.rate_and_slope(at_stages, stages)
     residual = collocation_residual(list(rate), mesh, node_state, stages)
     weight = STAGE_INTEGRALS[-1][:, None, None] * mesh.width

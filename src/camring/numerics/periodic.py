@@ -47,6 +47,7 @@ from camring.numerics.mesh import (
     graded_mesh,
 )
 from camring.numerics.newton import damped_newton
+from camring.numerics.once import computed_once
 from camring.numerics.radau import (
     STAGE_INTEGRALS,
     STAGES,
@@ -142,7 +143,7 @@ def solve_periodic(
     mesh = graded_mesh(fixed.position, period)
     tolerances = [resolution.rough_tolerance] * resolution.refinements + [resolution.tolerance]
     limit = resolution.iterations
-    at_stages = frozen.forcing(mesh, jnp.asarray(STAGES))
+    at_stages = computed_once(frozen.forcing(mesh, jnp.asarray(STAGES)))
     stages, iterations = _newton(
         frozen, at_stages, mesh, frozen.guess(at_stages), tolerances[0], limit
     )
@@ -157,7 +158,7 @@ def solve_periodic(
             finer = with_nodes_at(finer, crossings(mesh, powers, level))
         stages = _interpolate(mesh, powers, finer.at(jnp.asarray(STAGES)))
         mesh = finer
-        at_stages = frozen.forcing(mesh, jnp.asarray(STAGES))
+        at_stages = computed_once(frozen.forcing(mesh, jnp.asarray(STAGES)))
         stages, iterations = _newton(frozen, at_stages, mesh, stages, tolerance, limit)
 
     return settle(equation, breakpoints, period, mesh, stages, iterations)
@@ -211,7 +212,7 @@ def newton_step(
 
     Returns node states and stage states.
     """
-    value, slope = equation.rate_and_slope(at_stages, stages)
+    value, slope = computed_once(equation.rate_and_slope(at_stages, stages))
     slope = stop_gradient(slope)
     defect = [
         mesh.width * combine(row, list(value)) - stages[i] for i, row in enumerate(STAGE_INTEGRALS)

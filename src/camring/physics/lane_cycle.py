@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
-from jax.lax import optimization_barrier
 from jaxtyping import Array, Float
 
 from camring.geometry.cam import RadialCam
@@ -21,6 +20,7 @@ from camring.numerics.equation import Equation
 from camring.numerics.lane_periodic import LaneResolution, settle_lanes, solve_lanes
 from camring.numerics.lanes import ascending_rows
 from camring.numerics.mesh import LAYER_ELEMENTS
+from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.spline import Jet
 from camring.numerics.spline import knots as spline_knots
@@ -97,9 +97,9 @@ def simulate_lanes(
     """
     # What later steps share is computed once: without the barriers the compiler would
     # write it into every loop that reads it.
-    motor, fluid, point = optimization_barrier((motor, fluid, point))
-    cam = optimization_barrier(round_the_cam(radial(motor)))
-    reference = optimization_barrier(reference_radii(motor, cam))
+    motor, fluid, point = computed_once((motor, fluid, point))
+    cam = computed_once(round_the_cam(radial(motor)))
+    reference = computed_once(reference_radii(motor, cam))
     breakpoints, sharp, own = _breakpoints(motor, look.knots)
     elements = look.elements * (motor.lobes // motor.cam.repeats) + own
     resolution = LaneResolution(elements, look.per_segment, look.tolerance)
