@@ -89,11 +89,6 @@ def manifold(seeds: int) -> Iterator[Kind]:
 SETS = {each.__name__: each for each in (references, sound, awkward, hard, manifold)}
 
 
-def judged(case: Case, racing: bool) -> dict:
-    """The other solver's results; oil with air, raced, needs a tight tolerance to be right."""
-    return independent_results(*case, tolerance=1e-10 if racing else 1e-8)
-
-
 def row_of(case: Case, found, estimated, expected: dict) -> dict:
     """The worst result of one motor against the other solver."""
     values = {name: float(getattr(found, name)) for name in expected}
@@ -116,7 +111,7 @@ def measured(kind: Kind, ladder: bool) -> list[dict]:
             rows.append({"refused": f"verdict {refused}"})
             continue
         try:
-            expected = judged(case, kind.name == "racing, second rung")
+            expected = independent_results(*case, tolerance=1e-9)
         except OrbitError as error:
             rows.append({"refused": f"the other solver: {error}"})
             continue

@@ -16,6 +16,7 @@ It is solved twice: roughly on a mesh laid from an orbit without coupling, and t
 on one laid from that solution, which knows what the copies do to one another.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import jax
@@ -191,10 +192,14 @@ def _laid_anew(
     period: float,
     elements: int,
 ) -> Mesh:
-    """A mesh of one period, not yet folded, by what the copy does when coupled."""
+    """A mesh of one period, not yet folded, by what copy and shared state do when coupled."""
     own, shared = orbit
     powers = own.coefficients
-    density = fourth_derivative_density(own.mesh, powers[3], extent(own.stage_state), period)
+    ranges = [extent(each.stage_state) for each in orbit]
+    # A small swing of the shared state counts for less than its shape asks, and for more than
+    # its size: by the mean of both no element is missing where a copy needs it.
+    ranges[1] = jnp.sqrt(ranges[0] * ranges[1])
+    density = jnp.maximum(*map(partial(_density, period), orbit, ranges))
     begin, end = segment_ends(breakpoints.position, period)
     forcing = equation.forcing_law(equation.parameters, begin, end - begin, jnp.zeros(1))
     state, common = (orbit.at_position(begin[None]) for orbit in (own, shared))
@@ -211,3 +216,7 @@ def _laid_anew(
         apart = powers - shared.coefficients
         laid = with_nodes_at(laid, crossings(own.mesh, apart, jnp.zeros(())))
     return laid
+
+
+def _density(period: float, orbit: Orbit, range_: Float[Array, ""]) -> Float[Array, " element"]:
+    return fourth_derivative_density(orbit.mesh, orbit.coefficients[3], range_, period)

@@ -18,7 +18,9 @@ def computed_once(values: Values) -> Values:
     modulus is below minus one, and a NaN is below nothing. Where a predicate is batched
     (`vmap`) the branch becomes a selection and nothing is stored.
     """
-    number = next(leaf for leaf in jax.tree.leaves(values) if jnp.issubdtype(leaf.dtype, jnp.floating))
+    number = next(
+        leaf for leaf in jax.tree.leaves(values) if jnp.issubdtype(leaf.dtype, jnp.floating)
+    )
     never = jnp.abs(number.ravel()[0]) < -1
 
     def other(given: Values) -> Values:

@@ -179,6 +179,10 @@ class Chamber:
     def pressure(self, state: np.ndarray, shift: np.ndarray) -> np.ndarray:
         return shift * np.exp(state) if self.oil.logarithmic else shift + self.scale * state
 
+    def size_of(self, pressure: float) -> float:
+        """What errors of a pressure are measured against: its own where the oil is thin."""
+        return min(self.scale, pressure) if self.oil.logarithmic else self.scale
+
     def shift_at(self, start: float, end: float) -> float:
         """Pressure of the wider open port on a stretch."""
         m, middle = self.machine, (start + end) / 2

@@ -59,13 +59,13 @@ def march(
 ) -> tuple[list[Stretch], float]:
     """Follow the pressure over one period; stretches and the pressure at the end.
 
-    Once the pressure comes as `near` that of the orbit followed `before` at a
-    kink, the rest is the same and taken from there.
+    Once the pressure comes as `near`, a share of its size, to that of the orbit
+    followed `before` at a kink, the rest is the same and taken from there.
     """
     stretches: list[Stretch] = []
     edges = chamber.edges
     for index, (start, end) in enumerate(pairwise(edges)):
-        if before and abs(pressure - before[index].pressure) <= near:
+        if before and abs(pressure - before[index].pressure) <= near * chamber.size_of(pressure):
             stretches += before[index:]
             return stretches, _end_pressure(chamber, before[-1].elements[-1])
         elements = _follow(chamber, float(start), float(end), pressure, tolerance)
@@ -193,20 +193,21 @@ def periodic_orbit(machine: Machine, tolerance: float = 1e-10) -> Orbit:
     chamber = Chamber(machine)
     if machine.manifold is not None:
         chamber = Chamber(machine, periodic_gallery(chamber, machine.manifold, tolerance))
-    pressure, allowed = machine.supply_pressure, 3 * tolerance * chamber.scale
+    pressure = machine.supply_pressure
     best: Orbit | None = None
     stretches: list[Stretch] = []
-    slack = 0.0
+    slack, least, allowed = 0.0, inf, 3 * tolerance
     for _ in range(12):
-        near = 0.01 * slack * tolerance * chamber.scale
+        near = 0.01 * slack * tolerance
         stretches, after = march(chamber, pressure, tolerance, stretches, near)
         elements = [element for stretch in stretches for element in stretch.elements]
         multiplier = exp(sum(e.exponent for e in elements))
         orbit = Orbit(chamber, elements, after - pressure, multiplier)
-        if best is None or abs(orbit.residual) < abs(best.residual):
-            best = orbit
+        missed = abs(orbit.residual) / chamber.size_of(pressure)
+        if missed < least:
+            best, least = orbit, missed
         slack = max(1 - multiplier, 1e-300)
-        if abs(orbit.residual) <= allowed * min(1.0, slack):
+        if missed <= allowed * min(1.0, slack):
             return orbit
         if slack < 1e-12:
             raise OrbitError(
@@ -216,6 +217,6 @@ def periodic_orbit(machine: Machine, tolerance: float = 1e-10) -> Orbit:
             pressure *= exp(min(max(log(after / pressure) / slack, -3.0), 3.0))
         else:
             pressure += orbit.residual / slack
-    if best is None or abs(best.residual) > 1e3 * allowed:
+    if best is None or least > 1e3 * allowed:
         raise OrbitError("Newton on the period map did not converge")
     return best
