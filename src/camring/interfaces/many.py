@@ -17,7 +17,7 @@ import numpy as np
 from jaxtyping import Float
 
 from camring.interfaces.errors import InputError
-from camring.objective.design_space import DesignSpace
+from camring.objective.design_space import AbstractSpace
 from camring.objective.lanes import (
     designs_in_lanes,
     judge_designs,
@@ -52,7 +52,7 @@ def _program(function: Callable) -> Callable:
 
 
 def evaluate_many(
-    space: DesignSpace,
+    space: AbstractSpace,
     system: System,
     goal: Goal,
     points: Points,
@@ -102,7 +102,7 @@ def evaluate_many(
 
 def _judged_by(
     judge_chunk: Callable[..., Assessment],
-    space: DesignSpace,
+    space: AbstractSpace,
     system: System,
     goal: Goal,
     look: LanesLook,
@@ -118,7 +118,7 @@ def _judged_by(
 
 
 def _in_lanes(
-    space: DesignSpace, system: System, goal: Goal, points: Points, look: LanesLook
+    space: AbstractSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> Assessment:
     designs = _designs(space, system, points)
     cycles = _solve(designs, look)
@@ -134,7 +134,7 @@ _judge = _program(judge_designs)
 
 @eqx.filter_jit
 def _one_by_one(
-    space: DesignSpace, system: System, goal: Goal, points: Points, look: LanesLook
+    space: AbstractSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> Assessment:
     resolution = Resolution.coarse() if look == LanesLook.search() else Resolution()
     judged = jax.vmap(lambda point: evaluate(space.apply(system, point), goal, resolution))
