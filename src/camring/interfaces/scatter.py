@@ -1,4 +1,4 @@
-"""Many motors built to one drawing: every result of each, with the same chances for every design."""
+"""Many motors built to one drawing: every result of each, with chances common to all designs."""
 
 from dataclasses import dataclass
 

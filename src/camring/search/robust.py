@@ -6,14 +6,13 @@ them.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from jaxtyping import Float
 
 from camring.search.problem import Outputs, Points, Problem
-from camring.search.statistic import Statistic
+from camring.search.statistic import Statistic, Weighed
 
 Point: TypeAlias = Float[np.ndarray, " dimension"]
 
@@ -32,22 +31,32 @@ class ScatteredSlopes(NamedTuple):
     constraints: Float[np.ndarray, "constraint dimension sample"]
 
 
-@dataclass(frozen=True)
 class RobustFunction:
     """One statistic of the objective, and one of every constraint.
 
-    Attributes
+    Parameters
     ----------
-    scattered, slopes
+    scattered, sample_slopes
         All samples of a design, and their slopes where none failed.
     of_objective, of_constraints
         The statistics to minimise, and to keep at zero or below.
+    safety
+        What is added to every constraint.
     """
 
-    scattered: Callable[[Point], Scattered]
-    sample_slopes: Callable[[Point], ScatteredSlopes]
-    of_objective: Statistic
-    of_constraints: Statistic
+    def __init__(
+        self,
+        scattered: Callable[[Point], Scattered],
+        sample_slopes: Callable[[Point], ScatteredSlopes],
+        of_objective: Statistic,
+        of_constraints: Statistic,
+        safety: float = 0.0,
+    ) -> None:
+        self._scattered, self._sample_slopes = scattered, sample_slopes
+        self._of_objective, self._of_constraints = of_objective, of_constraints
+        self._safety = safety
+        self._weighed: dict[bytes, tuple[Weighed, list[Weighed]]] = {}
+        self._slopes: dict[bytes, tuple[Point, Float[np.ndarray, "constraint dimension"]]] = {}
 
     def problem(self, dimension: int, constraint_count: int) -> Problem:
         """For the searches of this room."""
@@ -59,24 +68,35 @@ class RobustFunction:
 
     def outputs(self, point: Point) -> Outputs:
         """Both statistics at one design; it fails as soon as one sample does."""
-        found = self.scattered(point)
+        found = self._scattered(point)
         sound = np.isfinite(found.objective) & np.all(np.isfinite(found.constraints), axis=0)
         if not np.all(sound):
             nothing = np.full(len(found.constraints), np.nan)
             failed = np.count_nonzero(~sound)
             return np.nan, nothing, np.nan, f"{failed} of {len(sound)} samples failed"
-        limits = np.array([self.of_constraints(row).value for row in found.constraints])
-        return self.of_objective(found.objective).value, limits, np.nan, None
+        objective, limits = self._weigh(point, found)
+        return objective.value, np.array([each.value for each in limits]), np.nan, None
 
     def slopes(self, point: Point) -> tuple[Point, Float[np.ndarray, "constraint dimension"]]:
         """Their gradients, for `GradientSearch`; at a design that did not fail."""
-        found, slopes = self.scattered(point), self.sample_slopes(point)
-        rows = [
-            slope @ self.of_constraints(row).weights
-            for row, slope in zip(found.constraints, slopes.constraints, strict=True)
-        ]
-        objective = slopes.objective @ self.of_objective(found.objective).weights
-        return objective, np.reshape(rows, (-1, len(point)))
+        key = np.asarray(point, dtype=float).tobytes()
+        if key not in self._slopes:
+            objective, limits = self._weighed.get(key) or self._weigh(point, self._scattered(point))
+            slopes = self._sample_slopes(point)
+            rows = [
+                slope @ each.weights for each, slope in zip(limits, slopes.constraints, strict=True)
+            ]
+            self._slopes[key] = (
+                slopes.objective @ objective.weights,
+                np.reshape(rows, (-1, len(point))),
+            )
+        return self._slopes[key]
+
+    def _weigh(self, point: Point, found: Scattered) -> tuple[Weighed, list[Weighed]]:
+        limits = [self._of_constraints(row + self._safety) for row in found.constraints]
+        weighed = self._of_objective(found.objective), limits
+        self._weighed[np.asarray(point, dtype=float).tobytes()] = weighed
+        return weighed
 
 
 __all__ = ["RobustFunction", "Scattered", "ScatteredSlopes"]

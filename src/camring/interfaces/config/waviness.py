@@ -3,6 +3,8 @@
 import re
 from typing import Any
 
+import numpy as np
+
 from camring.geometry.cam import RadialCam
 from camring.interfaces.config.entries import Number, Unfit
 from camring.interfaces.config.tables import MotorTable
@@ -50,7 +52,7 @@ def build_waviness(
         )
     unfold = cam.repeats > 1 and any(order % cam.repeats for order in orders)
     texts = {_order(key): str(value) for key, value in given.items()}
-    waves = Waviness(orders, real([amplitudes[each] for each in orders]), unfold)
+    waves = Waviness(orders, real(np.array([amplitudes[each] for each in orders])), unfold)
     return waves, tuple(f"amplitude {texts[each]}, any phase" for each in orders)
 
 
