@@ -53,7 +53,7 @@ def build_waviness(
     unfold = cam.repeats > 1 and any(order % cam.repeats for order in orders)
     texts = {_order(key): str(value) for key, value in given.items()}
     waves = Waviness(orders, real(np.array([amplitudes[each] for each in orders])), unfold)
-    return waves, tuple(f"amplitude {texts[each]}, any phase" for each in orders)
+    return waves, tuple(f"{texts[each]}, any phase" for each in orders)
 
 
 def _order(key: str) -> int:
