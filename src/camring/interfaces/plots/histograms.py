@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from camring.interfaces.plots.style import sheet, styled
 from camring.interfaces.report.palette import INK, LIMIT, QUIET
@@ -65,10 +66,11 @@ def robust_comparison(found: "RobustDesign", names: Sequence[str] = ()) -> Figur
     boards = figure.subplots(1, len(names), squeeze=False, sharey=True).ravel()
     for board, name in zip(boards, names, strict=True):
         factor = shown(name).factor
+        worst = max(looks, key=lambda each: found.scatters[each].quantile(name, MARK))
         for design, (colour, dash) in looks.items():
             scatter = found.scatters[design]
             values = np.sort(scatter.results[name][scatter.sound]) * factor
-            _distribution(board, values, colour, dash, design)
+            _distribution(board, values, colour, dash, design == worst)
             drawn = scatter.nominal[name] * factor
             share = float(np.interp(drawn, values, np.linspace(0, 100, len(values))))
             board.plot(drawn, share, "o", color=colour, markersize=4, clip_on=False)
@@ -76,25 +78,29 @@ def robust_comparison(found: "RobustDesign", names: Sequence[str] = ()) -> Figur
         board.axhline(100 * MARK, color=QUIET, linewidth=0.8)
     boards[0].set_ylabel("Motors below, %")
     boards[0].set_ylim(0, 100)
-    boards[0].legend(loc="lower right")
+    lines = [Line2D([], [], color=colour, linestyle=dash) for colour, dash in looks.values()]
+    dot = Line2D([], [], color=QUIET, marker="o", linestyle="", markersize=4)
+    figure.legend([*lines, dot], [*looks, "as drawn"], loc="outside upper left", ncols=3)
     return figure
 
 
 def _distribution(
-    board: Axes, values: Float[np.ndarray, " sample"], colour: str, dash: str, words: str
+    board: Axes, values: Float[np.ndarray, " sample"], colour: str, dash: str, behind: bool
 ) -> None:
-    """The samples' distribution function, and its 95 % point told."""
+    """The samples' distribution function; its 95 % point told behind or before its line."""
     shares = 100 * (np.arange(len(values)) + 0.5) / len(values)
-    board.plot(values, shares, dash, color=colour, label=words)
+    board.plot(values, shares, linestyle=dash, color=colour)
     mark = float(np.quantile(values, MARK))
     board.plot([mark, mark], [0, 100 * MARK], ":", color=colour, linewidth=1.0)
     board.annotate(
         f"{mark:.3g}",
         (mark, 4),
-        xytext=(3, 0),
+        xytext=(3 if behind else -3, 0),
         textcoords="offset points",
+        horizontalalignment="left" if behind else "right",
         color=colour,
         fontsize=8,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.5},
     )
 
 
