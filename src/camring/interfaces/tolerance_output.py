@@ -15,6 +15,7 @@ from camring.interfaces.scatter import OBJECTIVE, tolerances_of
 from camring.interfaces.scatter_output import (
     SHARES,
     kept_sentence,
+    labelled,
     samples_csv,
     shown,
     summary,
@@ -69,10 +70,6 @@ def sentences(found: ToleranceStudy) -> list[str]:
             f"Slopes do not explain the scatter of {', '.join(bent)}: not linear that far. "
             "Go by the regression, the second number, and by the samples."
         )
-    said.append(
-        f"{len(found.scatter.deviates)} motors at final resolution in "
-        f"{found.sampling_seconds:.1f} s; seed {found.seed}."
-    )
     return said
 
 
@@ -104,6 +101,7 @@ def document(found: ToleranceStudy) -> str:
                 "versions": versions(),
                 "samples": len(scatter.deviates),
                 "seed": found.seed,
+                "seconds": found.sampling_seconds,
                 "tolerances": dict(zip(tolerances.names, tolerances.told, strict=True)),
                 "results": results,
                 "variances": causes,
@@ -119,8 +117,7 @@ def document(found: ToleranceStudy) -> str:
 
 def _results(found: ToleranceStudy) -> Table:
     table = Table(box=None, pad_edge=False)
-    table.add_column("")
-    table.add_column("")
+    table.add_column("", no_wrap=True)
     for words in ("as drawn", "mean", "st. dev.", "by slopes"):
         table.add_column(words, justify="right")
     for share in SHARES:
@@ -129,8 +126,7 @@ def _results(found: ToleranceStudy) -> Table:
         how = shown(name)
         spread = [values["standard_deviation"], found.first_order(name)]
         table.add_row(
-            how.label,
-            how.unit,
+            labelled(name),
             how.written(values["nominal"]),
             how.written(values["mean"]),
             *(significant(each * how.factor, 3) for each in spread),

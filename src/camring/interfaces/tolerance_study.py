@@ -30,7 +30,7 @@ class ToleranceStudy:
         Of each result the variance that each tolerance brings, by exact slopes at the
         motor as drawn, and by a plane through the samples.
     sampling_seconds
-        What all samples took, without what was compiled before.
+        What all samples took; the first time in a process with compiling.
     """
 
     file: MotorFile

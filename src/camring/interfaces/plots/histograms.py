@@ -1,7 +1,7 @@
 """How results scatter: a histogram of each, and two designs beside each other."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float
@@ -62,7 +62,7 @@ def robust_comparison(found: "RobustDesign", names: Sequence[str] = ()) -> Figur
 
     names = names or ("torque_ripple", "objective")
     figure = sheet(6.3, 2.9)
-    looks = {NOMINAL: (ORANGE, "--"), ROBUST: (BLUE, "-")}
+    looks: dict[str, tuple[str, Any]] = {NOMINAL: (ORANGE, "--"), ROBUST: (BLUE, "-")}
     boards = figure.subplots(1, len(names), squeeze=False, sharey=True).ravel()
     for board, name in zip(boards, names, strict=True):
         factor = shown(name).factor
@@ -85,7 +85,7 @@ def robust_comparison(found: "RobustDesign", names: Sequence[str] = ()) -> Figur
 
 
 def _distribution(
-    board: Axes, values: Float[np.ndarray, " sample"], colour: str, dash: str, behind: bool
+    board: Axes, values: Float[np.ndarray, " sample"], colour: str, dash: Any, behind: bool
 ) -> None:
     """The samples' distribution function; its 95 % point told behind or before its line."""
     shares = 100 * (np.arange(len(values)) + 0.5) / len(values)
