@@ -8,6 +8,7 @@ import pytest
 from both_roads import relative_errors, run_all, single
 from motors import STRUCTURES, awkward_case, sound_case, stacked
 
+from camring.geometry.cam import RadialCam
 from camring.geometry.lane_cam import radius_around, radius_at, round_the_cam
 from camring.metrics.lane_summary import summarise_lanes
 from camring.numerics.lanes import ascending_rows, interpolate, locate
@@ -126,6 +127,17 @@ def test_cams_in_lanes_are_the_cams(sound):
     lowest, highest = round_.extremes()
     # One rise a lobe: what is climbed is the stroke.
     np.testing.assert_allclose(round_.rises(), highest - lowest, rtol=1e-6)
+
+
+def test_extremes_of_a_cam_lie_within_its_control_radii():
+    """Also where a dead centre is a sample and rounding moves it from one side to the other."""
+    rng, lanes = np.random.default_rng(0), 16_384
+    lift = -np.cos(2 * np.pi * np.arange(16) / 16)[:, None] * rng.uniform(0.05, 0.15, lanes)
+    radii = (0.9 + lift) * (1 + 2.0**-52 * rng.integers(-2, 3, (16, lanes)))
+    cams = RadialCam(radii, repeats=6)
+    lowest, highest = eqx.filter_jit(lambda cam: round_the_cam(cam).extremes())(cams)
+    assert np.all(lowest > radii.min(axis=0))
+    assert np.all(highest < radii.max(axis=0))
 
 
 def test_rows_are_found_and_sorted_lane_by_lane():

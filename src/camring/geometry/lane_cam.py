@@ -85,7 +85,8 @@ def round_the_cam(cam: RadialCam) -> RoundTheCam:
     half = -(linear + jnp.where(linear < 0, -root, root)) / 2
     one = start / jnp.where(turns, half, 1.0)
     other = half / jnp.where(turns & (square != 0), square, 1.0)
-    turn = jnp.where((one > 0) & (one < 1), one, other)
+    # A root at an end, one rounding outside, would else be taken for the other, far away.
+    turn = jnp.clip(jnp.where((one > 0) & (one < 1), one, other), 0.0, 1.0)
     there = ((square / 3 * turn + linear / 2) * turn + start) * turn
     return RoundTheCam(jet, value[:-1] + jnp.where(turns, there, rise))
 

@@ -31,6 +31,8 @@ COMMANDS = (
     "optimise",
     "pareto",
     "sensitivities",
+    "tolerance",
+    "robust",
     "resume",
     "report",
     "export",

@@ -16,7 +16,7 @@ from camring.metrics import summary
 from camring.metrics.accuracy import Accurate, Look, climb
 from camring.metrics.summary import Metrics
 from camring.numerics.quantity import ArrayLike
-from camring.objective.design_space import DesignSpace
+from camring.objective.design_space import AbstractSpace
 from camring.objective.objective import Assessment, Goal, judge
 from camring.objective.slopes import (
     Operated,
@@ -117,7 +117,7 @@ _judged_slopes = eqx.filter_jit(judged_slopes)
 
 
 def slopes(
-    space: DesignSpace, given: System, unit_point: ArrayLike, design: Solved, goal: Goal
+    space: AbstractSpace, given: System, unit_point: ArrayLike, design: Solved, goal: Goal
 ) -> Slopes:
     """Derivatives of objective and constraints of a design by its unit coordinates.
 
@@ -132,7 +132,7 @@ def slopes(
 
 
 def slopes_with_results(
-    space: DesignSpace,
+    space: AbstractSpace,
     given: System,
     unit_point: ArrayLike,
     design: Solved,

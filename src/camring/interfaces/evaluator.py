@@ -14,7 +14,7 @@ from camring.interfaces.config import MotorFile, missing_design_space, parse_mot
 from camring.interfaces.record import Outcome
 from camring.numerics.verdict import Verdict
 from camring.objective.baseline import approximate
-from camring.objective.design_space import DesignSpace, leaf
+from camring.objective.design_space import AbstractSpace, DesignSpace, leaf
 from camring.objective.objective import Assessment, Goal
 from camring.objective.slopes import Slopes
 from camring.physics.resolution import Resolution
@@ -113,7 +113,7 @@ def model_of(text: str) -> Model:
 
 
 @eqx.filter_jit
-def applied(space: DesignSpace, system: System, point: Point) -> System:
+def applied(space: AbstractSpace, system: System, point: Point) -> System:
     """The system of one design, from one compiled program."""
     return space.apply(system, point)
 

@@ -17,15 +17,17 @@ import numpy as np
 from jaxtyping import Float
 
 from camring.interfaces.errors import InputError
-from camring.objective.design_space import DesignSpace
+from camring.objective.design_space import AbstractSpace
 from camring.objective.lanes import (
+    ManySlopes,
     designs_in_lanes,
     judge_designs,
+    slopes_of_designs,
     solve_designs,
     summarise_designs,
 )
 from camring.objective.objective import Assessment, Goal, evaluate
-from camring.physics.lane_cycle import LanesLook, fits
+from camring.physics.lane_cycle import LaneCycle, LanesLook, fits
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
@@ -52,7 +54,7 @@ def _program(function: Callable) -> Callable:
 
 
 def evaluate_many(
-    space: DesignSpace,
+    space: AbstractSpace,
     system: System,
     goal: Goal,
     points: Points,
@@ -102,7 +104,7 @@ def evaluate_many(
 
 def _judged_by(
     judge_chunk: Callable[..., Assessment],
-    space: DesignSpace,
+    space: AbstractSpace,
     system: System,
     goal: Goal,
     look: LanesLook,
@@ -118,23 +120,44 @@ def _judged_by(
 
 
 def _in_lanes(
-    space: DesignSpace, system: System, goal: Goal, points: Points, look: LanesLook
+    space: AbstractSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> Assessment:
+    return judge_and_keep(space, system, goal, points, look)[1]
+
+
+def judge_and_keep(
+    space: AbstractSpace, system: System, goal: Goal, points: Points, look: LanesLook
+) -> tuple[tuple[LaneCycle, ...], Assessment]:
+    """Some points side by side, a program for each number of them; and what was solved."""
     designs = _designs(space, system, points)
     cycles = _solve(designs, look)
     metrics = _summarise(cycles, goal, look)
-    return _judge(designs, cycles, metrics, goal)
+    return cycles, _judge(designs, cycles, metrics, goal)
+
+
+def slopes_in_lanes(
+    space: AbstractSpace,
+    system: System,
+    goal: Goal,
+    points: Points,
+    cycles: tuple[LaneCycle, ...],
+    look: LanesLook,
+    first: int | None = None,
+) -> ManySlopes:
+    """`objective.lanes.slopes_of_designs` of what `judge_and_keep` solved, as NumPy arrays."""
+    return jax.device_get(_slopes(space, system, points, cycles, goal, look, first))
 
 
 _designs = _program(designs_in_lanes)
 _solve = _program(solve_designs)
 _summarise = _program(summarise_designs)
 _judge = _program(judge_designs)
+_slopes = _program(slopes_of_designs)
 
 
 @eqx.filter_jit
 def _one_by_one(
-    space: DesignSpace, system: System, goal: Goal, points: Points, look: LanesLook
+    space: AbstractSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> Assessment:
     resolution = Resolution.coarse() if look == LanesLook.search() else Resolution()
     judged = jax.vmap(lambda point: evaluate(space.apply(system, point), goal, resolution))

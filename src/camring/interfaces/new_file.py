@@ -41,6 +41,24 @@ def write_new_file(path: Path, text: str, *, replace: bool = False) -> None:
         ) from None
 
 
+def make_new_folder(path: Path) -> None:
+    """A folder where none is.
+
+    Raises
+    ------
+    InputError
+        When something is there, or none can be made.
+    """
+    shown = printable(path)
+    try:
+        path.mkdir(parents=True)
+    except FileExistsError:
+        raise InputError(shown, "exists", "choose another name") from None
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise InputError(shown, f"cannot be made ({reason})", "choose another place") from None
+
+
 def _create(path: Path, text: str) -> None:
     with open(path, "x", encoding="utf-8") as file:
         try:

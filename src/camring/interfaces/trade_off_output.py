@@ -12,7 +12,7 @@ from rich.table import Table
 from camring.interfaces.config.document import printable
 from camring.interfaces.errors import InputError
 from camring.interfaces.grid import plain_unit, quantity, result_names
-from camring.interfaces.new_file import write_new_file
+from camring.interfaces.new_file import make_new_folder, write_new_file
 from camring.interfaces.simulation_output import console, versions
 from camring.interfaces.study_folder import require_vacant
 from camring.interfaces.trade_off import INDEPENDENT_AGREEMENT, TradeOff
@@ -41,13 +41,7 @@ def write(found: TradeOff, folder: Path) -> None:
     from camring.interfaces.plots import front, save
 
     designs = folder / DESIGNS
-    try:
-        designs.mkdir(parents=True)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise InputError(
-            printable(folder), f"cannot be made ({reason})", "choose another place"
-        ) from None
+    make_new_folder(designs)
     for number, each in enumerate(found.compromises, 1):
         write_new_file(designs / f"{number:02d}.toml", each.text)
     write_new_file(folder / TABLE, csv_text(found))

@@ -4,6 +4,7 @@
 cam. Points are coordinates in [0, 1]; the given system lies inside the box.
 """
 
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -20,13 +21,16 @@ DocumentValue = float | list[float] | list[list[float]]
 
 
 def leaf(path: str) -> Callable[[System], Array]:
-    """The function that takes the leaf at a path, `motor.piston.bore`, out of a system."""
+    """The function that takes the leaf at a path, `motor.piston.bore`, out of a system.
+
+    A whole number in it is a place: `operating_points.0.shaft_speed`.
+    """
     parts = path.split(".")
 
     def take(system: System) -> Array:
         here: Any = system
         for part in parts:
-            here = getattr(here, part)
+            here = here[int(part)] if part.isdigit() else getattr(here, part)
         return here
 
     return take
@@ -70,7 +74,25 @@ class Variable(eqx.Module):
         return (given - self.low) / (self.high - self.low)
 
 
-class DesignSpace(eqx.Module):
+class AbstractSpace(eqx.Module):
+    """Coordinates, and the system at each of their points."""
+
+    @property
+    @abstractmethod
+    def names(self) -> tuple[str, ...]:
+        """A name for each coordinate."""
+
+    @property
+    @abstractmethod
+    def dimension(self) -> int:
+        """How many coordinates there are."""
+
+    @abstractmethod
+    def apply(self, system: System, unit_point: ArrayLike) -> System:
+        """The system of one point; traceable, differentiable, batched with `vmap`."""
+
+
+class DesignSpace(AbstractSpace):
     """A box of designs around a given system.
 
     Every method takes that system, so a space is only the statement of what
@@ -142,4 +164,4 @@ class DesignSpace(eqx.Module):
         return values
 
 
-__all__ = ["CamModes", "DesignSpace", "Variable", "control_values", "leaf"]
+__all__ = ["AbstractSpace", "CamModes", "DesignSpace", "Variable", "control_values", "leaf"]

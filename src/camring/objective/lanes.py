@@ -13,14 +13,14 @@ from jaxtyping import Array, Float
 
 from camring.metrics.lane_summary import summarise_lanes
 from camring.metrics.summary import Metrics
-from camring.objective.design_space import DesignSpace
+from camring.objective.design_space import AbstractSpace
 from camring.objective.objective import Assessment, Goal, judge
 from camring.physics.lane_cycle import LaneCycle, LanesLook, neighbour_lanes, simulate_lanes
 from camring.physics.system import System
 
 
 def designs_in_lanes(
-    space: DesignSpace, system: System, points: Float[Array, "lane coordinate"]
+    space: AbstractSpace, system: System, points: Float[Array, "lane coordinate"]
 ) -> System:
     """The system at each point of the unit box, every leaf with a lane for each."""
     return jax.vmap(lambda point: space.apply(system, point), out_axes=-1)(points)
@@ -58,12 +58,13 @@ class ManySlopes(NamedTuple):
 
 
 def slopes_of_designs(
-    space: DesignSpace,
+    space: AbstractSpace,
     system: System,
     points: Float[Array, "lane coordinate"],
     found: tuple[LaneCycle, ...],
     goal: Goal,
     look: LanesLook,
+    first: int | None = None,
 ) -> ManySlopes:
     """How objective and constraints of each design change with every coordinate, exactly.
 
@@ -71,6 +72,8 @@ def slopes_of_designs(
     ----------
     found
         What was solved at the points; nothing is solved again, see `neighbour_lanes`.
+    first
+        By so many of the first coordinates only; by all unless given.
     """
 
     def judged(points: Float[Array, "lane coordinate"]) -> tuple[Array, dict[str, Array]]:
@@ -83,5 +86,5 @@ def slopes_of_designs(
         return said.physical_objective, said.constraints
 
     _, linear = jax.linearize(judged, points)
-    along = jnp.eye(points.shape[-1])[:, None]
-    return ManySlopes(*jax.vmap(linear)(jnp.broadcast_to(along, (points.shape[-1], *points.shape))))
+    along = jnp.eye(points.shape[-1])[:first, None]
+    return ManySlopes(*jax.vmap(linear)(jnp.broadcast_to(along, (len(along), *points.shape))))

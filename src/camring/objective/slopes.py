@@ -18,7 +18,7 @@ from jaxtyping import Array, Float
 
 from camring.metrics.summary import Metrics, summarise
 from camring.numerics.quantity import ArrayLike
-from camring.objective.design_space import DesignSpace
+from camring.objective.design_space import AbstractSpace
 from camring.objective.objective import Goal, judge
 from camring.objective.terms import TERM_RESULTS
 from camring.physics.cycle import Cycle, neighbour
@@ -49,7 +49,7 @@ def results_used(goal: Goal) -> tuple[str, ...]:
     return tuple(dict.fromkeys([*TERM_RESULTS, *goal.constraints.results_used()]))
 
 
-def directions(space: DesignSpace, system: System, unit_point: ArrayLike) -> System:
+def directions(space: AbstractSpace, system: System, unit_point: ArrayLike) -> System:
     """What a unit step along each coordinate changes in a system, leaves (coordinate, ...)."""
     point = jnp.asarray(unit_point)
 

@@ -8,6 +8,7 @@ import numpy as np
 from camring.interfaces.config.design_cam import build_cam_modes
 from camring.interfaces.config.entries import Band, Count, Entry, Number, Numbers, Unfit
 from camring.interfaces.config.keys import Choices, key_map, nearest
+from camring.interfaces.config.paths import flat_paths
 from camring.interfaces.config.tables import FileTables
 from camring.interfaces.errors import InputError, quote
 from camring.numerics.quantity import real
@@ -32,7 +33,7 @@ def build_design_space(
     """
     keys = key_map(choices)
     variables, seen = [], set[str]()
-    for path, bounds in _flat(table, keys):
+    for path, bounds in flat_paths(table, keys, without="cam"):
         variable = _variable(path, bounds, keys, tables, system)
         for key in variable.keys:
             if key in seen:
@@ -57,22 +58,6 @@ def build_design_space(
 
 def _field(path: str) -> str:
     return f'design_space."{path}"'
-
-
-def _flat(table: dict[str, Any], keys: dict[str, Entry]) -> list[tuple[str, Any]]:
-    """Paths with their bounds, whether written in quotes or as nested tables."""
-    found: list[tuple[str, Any]] = []
-    for name, value in table.items():
-        if name != "cam":
-            found += _flat_below(name, value, keys)
-    return found
-
-
-def _flat_below(path: str, value: Any, keys: dict[str, Entry]) -> list[tuple[str, Any]]:
-    inner = any(key.startswith(path + ".") for key in keys)
-    if not (isinstance(value, dict) and inner):
-        return [(path, value)]
-    return [each for key in value for each in _flat_below(f"{path}.{key}", value[key], keys)]
 
 
 def _variable(

@@ -17,6 +17,7 @@ from camring.interfaces.config.keys import Choices, choose, file_tables
 from camring.interfaces.config.oil import with_oil
 from camring.interfaces.config.soundness import require_sound
 from camring.interfaces.config.tables import EvaluatorTable, FileTables, SearchTable
+from camring.interfaces.config.tolerances import Tolerances, build_tolerances
 from camring.interfaces.config.translate import input_error
 from camring.interfaces.config.writer import changed_text
 from camring.interfaces.errors import InputError
@@ -37,6 +38,8 @@ class MotorFile:
         The motor with oil and operating points, and what is wanted of it.
     design_space
         What may change; None when the file has no `[design_space]`.
+    tolerances
+        What scatters from motor to motor; None when the file has no `[tolerances]`.
     search
         Settings of the search.
     evaluator
@@ -52,6 +55,7 @@ class MotorFile:
     system: System
     goal: Goal
     design_space: DesignSpace | None
+    tolerances: Tolerances | None
     search: SearchTable
     evaluator: EvaluatorTable | None
     choices: Choices
@@ -80,6 +84,15 @@ def missing_design_space(path: Path) -> InputError:
     )
 
 
+def missing_tolerances(path: Path) -> InputError:
+    """What a command says that cannot work without tolerances."""
+    return InputError(
+        printable(path),
+        "has no table [tolerances]",
+        'say what scatters, for example "motor.valve_plate.shift" = "0.2 deg" in it',
+    )
+
+
 def read_motor_file(path: str | Path) -> MotorFile:
     """Read and check a motor file.
 
@@ -101,6 +114,9 @@ def parse_motor_file(text: str, path: Path = Path("motor.toml")) -> MotorFile:
     space = None
     if tables.design_space is not None:
         space = build_design_space(tables.design_space, tables, system, choices)
+    tolerances = None
+    if tables.tolerances is not None:
+        tolerances = build_tolerances(tables.tolerances, tables, document, system, choices)
     for name in ("search", "evaluator"):
         if space is None and name in document:
             raise InputError(
@@ -118,6 +134,7 @@ def parse_motor_file(text: str, path: Path = Path("motor.toml")) -> MotorFile:
         system=system,
         goal=build_goal(tables),
         design_space=space,
+        tolerances=tolerances,
         search=tables.search,
         evaluator=tables.evaluator,
         choices=choices,

@@ -297,7 +297,8 @@ class OperatingPointTable(Table):
 
 
 class FileTables(Table):
-    """The whole file; `design_space` is read by `design.py` once the motor stands."""
+    """The whole file; `design_space` is read by `design.py` once the motor stands, `tolerances`
+    by `tolerances.py`."""
 
     motor: MotorTable
     fluid: FluidTable
@@ -305,6 +306,7 @@ class FileTables(Table):
     objective: ObjectiveTable = ObjectiveTable()
     constraints: ConstraintsTable = ConstraintsTable()
     design_space: dict[str, Any] | None = None
+    tolerances: dict[str, Any] | None = None
     search: SearchTable = SearchTable()
     evaluator: EvaluatorTable | None = None
 

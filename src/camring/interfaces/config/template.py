@@ -140,6 +140,14 @@ modes = 8
 amplitude = "40 %"
 mirror = true                                 # stays symmetric about its dead centres
 
+# What scatters from one built motor to the next, plus or minus, for `camring tolerance` and
+# `camring robust`; and amplitudes of waves round the ring by waves a revolution.
+# [tolerances]
+# "motor.valve_plate.shift" = "0.3 deg"
+# "fluid.bulk_modulus" = {{ relative = "10 %", distribution = "normal" }}
+# [tolerances.waviness]
+# 3 = "5 um"
+
 [search]
 budget = 300                                  # model evaluations, at most
 # method = "bayesian"                         # learns from evaluations alone; no slopes

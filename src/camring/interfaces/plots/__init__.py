@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         ripple_map,
         sweep_curves,
     )
+    from camring.interfaces.plots.histograms import robust_comparison, scatter_histograms
     from camring.interfaces.plots.ring import cam
     from camring.interfaces.plots.style import save
 
@@ -32,7 +33,9 @@ _HOMES = {
     "pressure_volume": "curves",
     "result_map": "grids",
     "ripple_map": "grids",
+    "robust_comparison": "histograms",
     "save": "style",
+    "scatter_histograms": "histograms",
     "spectrum": "curves",
     "sweep_curves": "grids",
     "torque": "curves",
@@ -47,7 +50,9 @@ __all__ = [
     "require_matplotlib",
     "result_map",
     "ripple_map",
+    "robust_comparison",
     "save",
+    "scatter_histograms",
     "spectrum",
     "sweep_curves",
     "torque",
