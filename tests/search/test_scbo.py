@@ -39,7 +39,7 @@ def test_a_batch_goes_on_with_the_same_bits_after_a_stop(townsend, strategy):
 @pytest.mark.parametrize("strategy", [Scbo(2, batch=4), CmaEs(2, batch=4)])
 def test_points_ahead_are_those_that_come(townsend, strategy):
     first = strategy.propose((), {}, 5)
-    ahead = strategy.ahead(first.memory)
+    ahead = strategy.ahead(1, first.memory)
     whole = minimise(townsend, strategy, 1 + len(ahead), seed=5).history
     assert [one.point.tobytes() for one in whole[1:]] == [point.tobytes() for point in ahead]
 
