@@ -9,7 +9,7 @@ import fake_study
 import numpy as np
 import pytest
 
-from camring.interfaces.coordinator import evaluate_or_fail, search
+from camring.interfaces.coordinator import evaluate_or_fail
 from camring.interfaces.executors import InThisProcess, Workers
 from camring.interfaces.interrupt import Interrupted, Interruption
 from camring.interfaces.study_folder import StudyFolder
@@ -33,15 +33,6 @@ def test_workers_are_spawned_and_held_to_one_thread():
         assert executor.submit(os.getenv, "NPROC").result() == "1"
         with pytest.raises(ValueError, match="invalid literal"):
             executor.submit(int, "twelve").result()
-
-
-def test_a_study_is_the_same_whoever_evaluates(tmp_path):
-    fake_study.run(tmp_path / "here", budget=12)
-    folder = StudyFolder.create(tmp_path / "there", fake_study.GIVEN, {})
-    with Workers(2) as executor, Interruption() as interruption:
-        search(fake_study.task(12), folder.store, executor, interruption)
-    folder.close()
-    assert fake_study.sequence(tmp_path / "there") == fake_study.sequence(tmp_path / "here")
 
 
 def test_an_evaluator_that_raises_makes_a_failed_evaluation():

@@ -14,8 +14,9 @@ PROGRAM = Path(fake_study.__file__)
 BUDGET = 60
 
 
-def start(folder, seconds=0.004, budget=BUDGET, **options):
+def start(folder, seconds=0.004, budget=BUDGET, workers=None, **options):
     command = [sys.executable, str(PROGRAM), str(folder), str(budget), str(seconds)]
+    command += [] if workers is None else [str(workers)]
     return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, **options)
 
 
@@ -53,6 +54,19 @@ def test_a_study_killed_many_times_is_bit_identical_to_one_that_was_not(tmp_path
         assert kept[: len(seen)] == seen
     fake_study.run(folder, BUDGET)
     assert fake_study.sequence(folder) == uninterrupted
+
+
+def test_evaluations_ahead_of_their_turn_are_repeated_after_a_kill(tmp_path):
+    """In the middle of batches; with two workers, then one, then none."""
+    fake_study.run(tmp_path / "whole", BUDGET, strategy=fake_study.IN_BATCHES)
+    folder = tmp_path / "study"
+    for workers, count in ((2, 3), (2, 17), (1, 29)):
+        process = start(folder, workers=workers)
+        wait_for_evaluations(folder, count, process)
+        process.kill()
+        process.communicate()
+    fake_study.run(folder, BUDGET, strategy=fake_study.IN_BATCHES)
+    assert fake_study.sequence(folder) == fake_study.sequence(tmp_path / "whole")
 
 
 def test_a_kill_at_any_instant_leaves_a_whole_study_or_none(tmp_path, uninterrupted):

@@ -99,7 +99,7 @@ def _settle(ours: Future, theirs: Any) -> None:
     error = theirs.exception()
     if isinstance(error, KilledWorker):
         died = 1 + error.allowed_failures
-        ours.set_exception(FunctionFailed(f"{died} workers of the cluster died at it"))
+        ours.set_exception(FunctionFailed(f"{died} workers died at it, one after the other"))
     elif error is not None:
         ours.set_exception(error)
     else:
