@@ -13,7 +13,7 @@ import numpy as np
 import camring
 from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
 from camring.interfaces.config.document import decode, read_text
-from camring.interfaces.config.goal_tables import BAYESIAN
+from camring.interfaces.config.goal_tables import BAYESIAN, GRADIENT
 from camring.interfaces.coordinator import Search, search
 from camring.interfaces.desk import WorkersGone
 from camring.interfaces.errors import InputError
@@ -56,6 +56,10 @@ class Silent:
         pass
 
 
+IDLE = (
+    "A descent by slopes asks for one design after another: workers help with the first "
+    "designs only, and --method bayesian keeps them busy."
+)
 Watch = Callable[[Sequence[Record], int], AbstractContextManager[Watcher]]
 
 
@@ -187,6 +191,8 @@ def _go_on(
             seed=int(facts["seed"]),
         )
         with watch(kept, budget) as watcher:
+            if method == GRADIENT and executor is not None:
+                watcher.say(IDLE)
             reason = search(task, study.store, executor or here, interruption, watcher)
             study.store.note(stopped=reason)
             watcher.say(reason)
