@@ -19,9 +19,6 @@ from camring.interfaces.executors import InThisProcess, Workers
 from camring.interfaces.interrupt import Interruption
 from camring.interfaces.record import Outcome
 from camring.interfaces.study_folder import StudyFolder
-from camring.search.cma_es import CmaEs
-from camring.search.hybrid import Hybrid, Stage
-from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy, Proposal, Stop
 
 GIVEN = b"# a motor file is only bytes to the store\n[motor]\npistons = 8\n"
@@ -64,8 +61,14 @@ def evaluate(point, seconds=0.0):
     )
 
 
-# The first stage ends in the middle of a batch, the second proposes one point or several.
-IN_BATCHES = Hybrid((Stage(CmaEs(DIMENSION, batch=4), 26), Stage(NelderMead(DIMENSION))))
+def in_batches():
+    """Its first stage ends in the middle of a batch, the second proposes one point or several."""
+    # Here, for they bring SciPy's statistics, and processes are started by the dozen.
+    from camring.search.cma_es import CmaEs
+    from camring.search.hybrid import Hybrid, Stage
+    from camring.search.nelder_mead import NelderMead
+
+    return Hybrid((Stage(CmaEs(DIMENSION, batch=4), 26), Stage(NelderMead(DIMENSION))))
 
 
 def task(budget=60, seed=7, seconds=0.0, strategy=None):
@@ -115,7 +118,7 @@ if __name__ == "__main__":
     try:
         if len(sys.argv) > 4:
             with Workers(int(sys.argv[4])) as workers:
-                run(where, evaluations, seconds=pause, strategy=IN_BATCHES, executor=workers)
+                run(where, evaluations, seconds=pause, strategy=in_batches(), executor=workers)
         else:
             run(where, evaluations, seconds=pause)
     except CamringError as error:

@@ -2,9 +2,12 @@
 
 import os
 import signal
+import subprocess
+import sys
 
 import fake_study
 import pytest
+from processes import lives, wait_for
 
 from camring.interfaces import dask_cluster
 from camring.interfaces.dask_cluster import Cluster
@@ -31,11 +34,11 @@ def address():
 
 
 def test_a_study_is_the_same_on_a_cluster(tmp_path, address):
-    fake_study.run(tmp_path / "here", BUDGET, strategy=fake_study.IN_BATCHES)
+    fake_study.run(tmp_path / "here", BUDGET, strategy=fake_study.in_batches())
     with chosen_executor(None, address) as executor:
         assert batch_of(None, executor) == 2
         fake_study.run(
-            tmp_path / "there", BUDGET, strategy=fake_study.IN_BATCHES, executor=executor
+            tmp_path / "there", BUDGET, strategy=fake_study.in_batches(), executor=executor
         )
     assert fake_study.sequence(tmp_path / "there") == fake_study.sequence(tmp_path / "here")
 
@@ -56,6 +59,29 @@ def test_a_call_whose_worker_died_is_repeated_until_too_many_have(tmp_path, addr
             cluster.submit(die, None).result()
         with pytest.raises(ValueError, match="invalid literal"):
             cluster.submit(int, "twelve").result()
+
+
+STAYING = """
+import os, sys
+from camring.interfaces.dask_cluster import Cluster
+from camring.interfaces.own_command import OwnCommand
+stay = "import os, time; open('noted', 'w').write(str(os.getpid()) + '.'); time.sleep(3600)"
+command = OwnCommand((sys.executable, "-S", "-c", stay), 3600.0, os.getcwd())
+Cluster(sys.argv[1]).submit(command.results, {}, (), 0).result()
+"""
+
+
+def test_a_kill_leaves_no_program_behind_on_a_cluster(tmp_path, address):
+    process = subprocess.Popen([sys.executable, "-c", STAYING, address], cwd=tmp_path)
+    noted = tmp_path / "noted"
+    try:
+        wait_for(lambda: noted.exists() and noted.read_text().endswith("."))
+        staying = int(float(noted.read_text()))
+        assert lives(staying)
+    finally:
+        process.kill()
+        process.wait()
+    wait_for(lambda: not lives(staying), patience=20)
 
 
 def test_a_study_stops_in_a_sentence_when_the_scheduler_is_gone(tmp_path):

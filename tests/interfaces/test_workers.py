@@ -50,7 +50,7 @@ class Shuffled(Executor):
 def alone(tmp_path_factory):
     """A study in batches that the coordinator's own process evaluates."""
     folder = tmp_path_factory.mktemp("alone") / "study"
-    fake_study.run(folder, BUDGET, strategy=fake_study.IN_BATCHES)
+    fake_study.run(folder, BUDGET, strategy=fake_study.in_batches())
     return fake_study.sequence(folder)
 
 
@@ -58,14 +58,14 @@ def alone(tmp_path_factory):
 def test_a_study_is_the_same_however_many_evaluate(tmp_path, alone, workers):
     with Workers(workers) as executor:
         fake_study.run(
-            tmp_path / "study", BUDGET, strategy=fake_study.IN_BATCHES, executor=executor
+            tmp_path / "study", BUDGET, strategy=fake_study.in_batches(), executor=executor
         )
     assert fake_study.sequence(tmp_path / "study") == alone
 
 
 def test_a_study_is_the_same_whoever_is_first_and_evaluates_nothing_in_vain(tmp_path, alone):
     executor = Shuffled()
-    fake_study.run(tmp_path / "study", BUDGET, strategy=fake_study.IN_BATCHES, executor=executor)
+    fake_study.run(tmp_path / "study", BUDGET, strategy=fake_study.in_batches(), executor=executor)
     assert fake_study.sequence(tmp_path / "study") == alone
     assert executor.carried_out == BUDGET
 
@@ -112,7 +112,7 @@ def die_beyond(point):
 
 def test_a_study_goes_on_past_a_point_at_which_workers_die(tmp_path, monkeypatch):
     monkeypatch.setattr(executors, "REPEATS", 1)
-    strategy = fake_study.IN_BATCHES
+    strategy = fake_study.in_batches()
     with Workers(2) as executor:
         fake_study.run(
             tmp_path / "study", 5, strategy=strategy, executor=executor, evaluator=die_beyond

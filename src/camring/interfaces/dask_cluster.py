@@ -2,19 +2,23 @@
 
 import logging
 import pickle
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar
 
 from camring.interfaces.compilation_cache import keep_compiled_programs
 from camring.interfaces.errors import InputError, quote
+from camring.interfaces.leash import end_those_of
 from camring.interfaces.own_process import FunctionFailed
 
 Result = TypeVar("Result")
 
 PATIENCE = 10.0  # seconds for a scheduler to answer
+LOOK_EVERY = 0.5  # seconds between two looks whether anybody waits for an answer
 
 
 class Cluster(Executor):
@@ -84,8 +88,34 @@ class Cluster(Executor):
 def carried_out(call: bytes) -> Any:
     """On a worker: what a call returns."""
     keep_compiled_programs()  # before the evaluator brings JAX
-    function, arguments, named = pickle.loads(call)
-    return function(*arguments, **named)
+    with _ended_when_nobody_waits():
+        function, arguments, named = pickle.loads(call)
+        return function(*arguments, **named)
+
+
+@contextmanager
+def _ended_when_nobody_waits() -> Iterator[None]:
+    """Ends the programs that this call has started when whoever submitted it has gone.
+
+    The scheduler notices the end of a client and tells the worker, which can but forget
+    the task: its thread goes on.
+    """
+    from distributed import get_worker
+
+    worker, here, done = get_worker(), threading.get_ident(), threading.Event()
+    key = worker.get_current_task()
+
+    def watch() -> None:
+        while not done.wait(LOOK_EVERY):
+            task = worker.state.tasks.get(key)
+            if task is None or task.state != "executing":
+                end_those_of(here)
+
+    threading.Thread(target=watch, name="camring-watch", daemon=True).start()
+    try:
+        yield
+    finally:
+        done.set()
 
 
 def _settle(ours: Future, theirs: Any) -> None:

@@ -63,17 +63,31 @@ def tied(group: int) -> Iterator[None]:
         _keeper.tell("untie", group)
 
 
+def end_those_of(thread: int) -> None:
+    """Ends the groups of processes that a thread has tied, given its `threading.get_ident()`."""
+    for group in _keeper.groups_of(thread):
+        with contextlib.suppress(OSError):
+            os.killpg(group, signal.SIGKILL)
+
+
 class _Keeper:
     """Started when it is first needed, and again should somebody have ended it."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._process: subprocess.Popen[bytes] | None = None
-        self._groups: set[int] = set()
+        self._groups: dict[int, int] = {}  # and the thread that tied each
+
+    def groups_of(self, thread: int) -> list[int]:
+        with self._lock:
+            return [group for group, tied_by in self._groups.items() if tied_by == thread]
 
     def tell(self, word: str, group: int) -> None:
         with self._lock:
-            (self._groups.add if word == "tie" else self._groups.discard)(group)
+            if word == "tie":
+                self._groups[group] = threading.get_ident()
+            else:
+                self._groups.pop(group, None)
             lines = [f"{word} {group}\n"]
             if self._process is None or self._process.poll() is not None:
                 self._start()
