@@ -2,6 +2,9 @@
 
 import subprocess
 import time
+from pathlib import Path
+
+PROCESSES = Path("/proc/self/stat")  # where there is none there is `ps`
 
 
 def wait_for(found, patience=60.0):
@@ -14,6 +17,12 @@ def wait_for(found, patience=60.0):
 
 def lives(process):
     """Whether a process is more than an entry that nobody has collected."""
+    if PROCESSES.exists():
+        try:
+            stat = Path(f"/proc/{process}/stat").read_text()
+        except (FileNotFoundError, ProcessLookupError):
+            return False
+        return stat.rpartition(")")[2].split()[0] != "Z"
     shown = subprocess.run(
         ["ps", "-o", "stat=", "-p", str(process)], capture_output=True, text=True, check=False
     ).stdout.strip()

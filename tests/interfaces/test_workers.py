@@ -9,14 +9,16 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPool
 from multiprocessing import get_context
 
 import fake_study
+import numpy as np
 import pytest
 from processes import lives, wait_for
 
 import camring
 from camring.interfaces import executors
-from camring.interfaces.desk import WorkersGone
+from camring.interfaces.desk import Desk, WorkersGone
 from camring.interfaces.errors import InputError
 from camring.interfaces.executors import Workers, batch_of, chosen_executor
+from camring.interfaces.interrupt import Interrupted
 from camring.interfaces.own_process import FunctionFailed
 from camring.interfaces.study_folder import StudyFolder
 
@@ -145,6 +147,33 @@ def test_whoever_leaves_in_an_exception_waits_for_nobody(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         leave()
     wait_for(lambda: not lives(int((tmp_path / "process").read_text())))
+
+
+class Idle(Executor):
+    """Takes everything and does nothing."""
+
+    def __init__(self):
+        self.futures = []
+
+    def submit(self, function, /, *arguments, **named):
+        self.futures.append(Future())
+        return self.futures[-1]
+
+
+def test_what_nobody_waits_for_any_more_is_not_begun():
+    def interrupted(future):
+        raise Interrupted("Stopped.")
+
+    idle, points = Idle(), [np.full(2, place / 8) for place in range(4)]
+    desk = Desk(idle, sum, str, interrupted)
+    with pytest.raises(Interrupted):
+        desk.answer(points[0], points[1:3])
+    assert not any(future.cancelled() for future in idle.futures)
+    with pytest.raises(Interrupted):
+        desk.answer(points[2], points[3:])
+    assert [future.cancelled() for future in idle.futures] == [True, True, False, False]
+    desk.close()
+    assert all(future.cancelled() for future in idle.futures)
 
 
 BOUNDS = {"width": (0.0, 4.0), "height": (-1.0, 1.0)}

@@ -63,13 +63,15 @@ class Desk(Generic[Answer]):
             for key, each in wanted.items():
                 if key not in self._pending:
                     self._pending[key] = self._executor.submit(self._evaluate, each)
-            return self._wait_for(self._pending.pop(point.tobytes()))
+            answer = self._wait_for(self._pending[point.tobytes()])
         except FunctionFailed as error:
-            return self._lost(str(error))
+            answer = self._lost(str(error))
         except CamringError:
             raise
         except Exception as error:
             raise WorkersGone(_in_words(error)) from error
+        del self._pending[point.tobytes()]
+        return answer
 
     def close(self) -> None:
         """Nothing more will be asked; what nobody has begun is not begun."""

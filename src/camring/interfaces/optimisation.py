@@ -120,6 +120,12 @@ def optimise(
     seed = motor_file.search.seed if seed is None else seed
     command = command_of(motor_file, evaluator, timeout)
     method = method_of(motor_file, method, command)
+    if batch is not None and method == GRADIENT:
+        raise InputError(
+            "--batch",
+            f"is {batch}, but a descent by slopes asks for one design after another",
+            "leave it out, or choose --method bayesian",
+        )
     batch = batch_of(batch, executor)
     with Interruption() as interruption:
         try:
