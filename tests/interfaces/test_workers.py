@@ -216,6 +216,14 @@ def test_a_function_that_cannot_travel_is_told():
 def test_what_cannot_be_used_is_told_in_a_sentence():
     with pytest.raises(InputError, match="give one of them"), chosen_executor(2, "tcp://host:1"):
         pass
+    with pytest.raises(InputError, match="workers is 0"):
+        Workers(0)
+    with pytest.raises(InputError, match="above zero"):
+        Workers(1, timeout=0)
+    with Workers(1) as dismissed:
+        pass
+    with pytest.raises(WorkersGone, match="dismissed"):
+        minimised(bowl, executor=dismissed)
     with pytest.raises(InputError, match="batch is 0"):
         minimised(bowl, batch=0)
     with Workers(1) as executor, pytest.raises(InputError, match="executor's own"):

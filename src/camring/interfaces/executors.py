@@ -40,6 +40,7 @@ class _Threads(Executor):
     """
 
     def __init__(self, ways: Sequence[Way]) -> None:
+        self._closed = False
         self._tasks: queue.SimpleQueue[Callable[[Way], None] | None] = queue.SimpleQueue()
         self._threads = [
             threading.Thread(
@@ -53,6 +54,9 @@ class _Threads(Executor):
     def submit(
         self, function: Callable[..., Result], /, *arguments: Any, **named: Any
     ) -> Future[Result]:
+        """Raises `RuntimeError` after `shutdown`."""
+        if self._closed:
+            raise RuntimeError("these workers were dismissed")
         future: Future[Result] = Future()
 
         def task(way: Way) -> None:
@@ -68,6 +72,7 @@ class _Threads(Executor):
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Takes no more work; what was submitted is still done, unless the program ends."""
+        self._closed = True
         for _ in self._threads:
             self._tasks.put(None)
 
@@ -95,9 +100,18 @@ class Workers(_Threads):
         How many; each is started when there is work for it.
     timeout
         Seconds after which a call is stopped; None waits for ever.
+
+    Raises
+    ------
+    InputError
+        When there would be none, or no time.
     """
 
     def __init__(self, workers: int, timeout: float | None = None) -> None:
+        if isinstance(workers, bool) or not isinstance(workers, int) or workers < 1:
+            raise InputError("workers", f"is {quote(workers)}", "give a whole number from 1 up")
+        if timeout is not None and not timeout > 0:
+            raise InputError("timeout", f"is {quote(timeout)}", "give seconds above zero")
         self.workers = workers
         self._stopping = False
         self._processes = [
@@ -126,19 +140,19 @@ class Workers(_Threads):
 
     def _way_to(self, process: OwnProcess) -> Way:
         def way(function: Callable[..., Any], *arguments: Any, **named: Any) -> Any:
-            for repeats in range(1 + REPEATS):
-                if self._stopping:
-                    raise CancelledError
+            deaths = 0
+            while not self._stopping:
                 try:
                     answer, error = process(function, *arguments, **named)
                 except ProcessEnded as ended:
-                    if repeats == REPEATS:
-                        raise FunctionFailed(f"{1 + REPEATS} workers died at it; {ended}") from None
+                    deaths += 1
+                    if deaths > REPEATS:
+                        raise FunctionFailed(f"{deaths} workers died at it; {ended}") from None
                     continue
                 if error is not None:
                     raise error
                 return answer
-            raise AssertionError
+            raise CancelledError
 
         return way
 
