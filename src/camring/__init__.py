@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     )
     from camring.interfaces.config import MotorFile, read_motor_file
     from camring.interfaces.errors import InputError
+    from camring.interfaces.executors import Workers
     from camring.interfaces.operating_map import operating_map
     from camring.interfaces.optimisation import optimise, resume
     from camring.interfaces.own_function import FunctionMinimum, minimise_function
@@ -54,6 +55,7 @@ _HOMES = {
     "Study": "camring.interfaces.study",
     "System": "camring.physics.system",
     "Weights": "camring.objective.terms",
+    "Workers": "camring.interfaces.executors",
     "evaluate": "camring.interfaces.compiled",
     "minimise_function": "camring.interfaces.own_function",
     "open_study": "camring.interfaces.study",
@@ -83,6 +85,7 @@ __all__ = [
     "Study",
     "System",
     "Weights",
+    "Workers",
     "__version__",
     "evaluate",
     "minimise_function",

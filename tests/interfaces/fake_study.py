@@ -1,19 +1,21 @@
 """A cheap study that runs through the real store, folder, lock and loop.
 
-Also a program: `python fake_study.py FOLDER BUDGET SECONDS_PER_EVALUATION`
-creates the study, or goes on with it, and ends with the exit code of `camring`.
+Also a program: `python fake_study.py FOLDER BUDGET SECONDS_PER_EVALUATION [WORKERS]`
+creates the study, or goes on with it, and ends with the exit code of `camring`. With
+workers it searches in batches of four.
 """
 
 import functools
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from camring.interfaces.coordinator import Search, search
 from camring.interfaces.errors import CamringError
-from camring.interfaces.executors import InThisProcess
+from camring.interfaces.executors import InThisProcess, Workers
 from camring.interfaces.interrupt import Interruption
 from camring.interfaces.record import Outcome
 from camring.interfaces.study_folder import StudyFolder
@@ -59,11 +61,21 @@ def evaluate(point, seconds=0.0):
     )
 
 
-def task(budget=60, seed=7, seconds=0.0):
+def in_batches():
+    """Its first stage ends in the middle of a batch, the second proposes one point or several."""
+    # Here, for they bring SciPy's statistics, and processes are started by the dozen.
+    from camring.search.cma_es import CmaEs
+    from camring.search.hybrid import Hybrid, Stage
+    from camring.search.nelder_mead import NelderMead
+
+    return Hybrid((Stage(CmaEs(DIMENSION, batch=4), 26), Stage(NelderMead(DIMENSION))))
+
+
+def task(budget=60, seed=7, seconds=0.0, strategy=None):
     return Search(
         evaluate=functools.partial(evaluate, seconds=seconds),
         constraints=("edge", "sum"),
-        strategy=Wanderer(),
+        strategy=strategy or Wanderer(),
         budget=budget,
         seed=seed,
     )
@@ -75,12 +87,14 @@ def open_or_create(path):
     return StudyFolder.create(path, GIVEN, {"seed": "7"})
 
 
-def run(path, budget=60, seed=7, seconds=0.0):
+def run(path, budget=60, seed=7, seconds=0.0, strategy=None, executor=None, evaluator=None):
     """Goes on with the study at `path`, creating it when there is none; its reason to stop."""
-    folder = open_or_create(path)
+    folder, what = open_or_create(path), task(budget, seed, seconds, strategy)
+    if evaluator is not None:
+        what = replace(what, evaluate=evaluator)
     try:
         with Interruption() as interruption:
-            return search(task(budget, seed, seconds), folder.store, InThisProcess(), interruption)
+            return search(what, folder.store, executor or InThisProcess(), interruption)
     finally:
         folder.close()
 
@@ -100,8 +114,13 @@ def sequence(path):
 
 
 if __name__ == "__main__":
+    where, evaluations, pause = Path(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3])
     try:
-        run(Path(sys.argv[1]), int(sys.argv[2]), seconds=float(sys.argv[3]))
+        if len(sys.argv) > 4:
+            with Workers(int(sys.argv[4])) as workers:
+                run(where, evaluations, seconds=pause, strategy=in_batches(), executor=workers)
+        else:
+            run(where, evaluations, seconds=pause)
     except CamringError as error:
         print(error, file=sys.stderr)
         sys.exit(error.exit_code)

@@ -9,8 +9,8 @@ import fake_study
 import numpy as np
 import pytest
 
-from camring.interfaces.coordinator import evaluate_or_fail, search
-from camring.interfaces.executors import InThisProcess, spawned_processes
+from camring.interfaces.coordinator import evaluate_or_fail
+from camring.interfaces.executors import InThisProcess, Workers
 from camring.interfaces.interrupt import Interrupted, Interruption
 from camring.interfaces.study_folder import StudyFolder
 
@@ -27,21 +27,12 @@ def test_one_background_thread_does_everything_in_order():
 
 
 def test_workers_are_spawned_and_held_to_one_thread():
-    with spawned_processes(1) as executor:
+    with Workers(1) as executor:
         assert executor.submit(os.getpid).result() != os.getpid()
         assert executor.submit(os.getenv, "OMP_NUM_THREADS").result() == "1"
         assert executor.submit(os.getenv, "NPROC").result() == "1"
-        flags = executor.submit(os.getenv, "XLA_FLAGS").result()
-        assert "multi_thread_eigen=false" in flags
-
-
-def test_a_study_is_the_same_whoever_evaluates(tmp_path):
-    fake_study.run(tmp_path / "here", budget=12)
-    folder = StudyFolder.create(tmp_path / "there", fake_study.GIVEN, {})
-    with spawned_processes(2) as executor, Interruption() as interruption:
-        search(fake_study.task(12), folder.store, executor, interruption)
-    folder.close()
-    assert fake_study.sequence(tmp_path / "there") == fake_study.sequence(tmp_path / "here")
+        with pytest.raises(ValueError, match="invalid literal"):
+            executor.submit(int, "twelve").result()
 
 
 def test_an_evaluator_that_raises_makes_a_failed_evaluation():

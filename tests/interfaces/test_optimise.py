@@ -219,10 +219,10 @@ def test_an_unknown_method_is_refused(tmp_path):
 
 @pytest.mark.skipif(os.cpu_count() == 1, reason="a worker and the coordinator share the core")
 def test_a_spawned_process_gives_the_same_design(tmp_path, finished):
-    from camring.interfaces.executors import spawned_processes
+    from camring.interfaces.executors import Workers
 
     whole, _, _ = finished
-    with spawned_processes(1) as executor:
+    with Workers(1) as executor:
         camring.optimise(EXAMPLE, tmp_path / "study", budget=3, executor=executor)
     ours, theirs = camring.open_study(tmp_path / "study"), camring.open_study(whole)
     for here, there in zip(ours.records, theirs.records, strict=False):

@@ -277,4 +277,6 @@ def test_slopes_cannot_be_had_from_a_program(tmp_path):
         camring.optimise(EXAMPLE, tmp_path / "c", evaluator="python 'x.py")
     with pytest.raises(InputError, match="--timeout is"):
         camring.optimise(EXAMPLE, tmp_path / "d", evaluator="python x.py", timeout="5 parsec")
+    with pytest.raises(InputError, match="one design after another"):
+        camring.optimise(EXAMPLE, tmp_path / "e", batch=2)
     assert not list(tmp_path.iterdir())

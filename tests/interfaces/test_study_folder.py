@@ -1,5 +1,7 @@
 """A study folder is refused in one sentence, with a way out, and nothing is overwritten."""
 
+import errno
+import fcntl
 import os
 import shutil
 import subprocess
@@ -158,6 +160,19 @@ def test_a_read_only_study_can_be_read_and_is_not_written(study):
     assert lines[0] == "5"
     assert len(lines) == 3
     assert all("cannot be written" in line for line in lines[1:])
+
+
+@pytest.mark.parametrize("number", [errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP])
+def test_a_disk_that_keeps_no_locks_is_told(tmp_path, monkeypatch, number):
+    """Lustre without -o flock, an NFS server without lockd."""
+
+    def refuse(*_):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(fcntl, "flock", refuse)
+    with pytest.raises(InputError, match=r"keeps no locks.*a disk of this machine"):
+        StudyFolder.create(tmp_path / "study", fake_study.GIVEN, {})
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_file_is_whole_or_untouched(tmp_path, monkeypatch):

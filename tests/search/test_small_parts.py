@@ -55,6 +55,12 @@ def test_a_warp_keeps_order_and_its_centre(value, other, centre, scale):
         assert float(warp(np.array(value))) <= float(warp(np.array(other)))
 
 
+@given(value=st.floats(-1e3, 1e3), centre=st.floats(-10, 10), scale=st.floats(0.1, np.inf))
+def test_a_warp_is_undone(value, centre, scale):
+    warp = Warp(centre, scale)
+    assert warp.undone(warp(np.array(value))) == pytest.approx(value, rel=1e-9, abs=1e-9)
+
+
 @given(value=finite)
 def test_a_warp_about_zero_keeps_feasibility(value):
     assert np.sign(Warp(0.0, 0.1)(np.array(value))) == np.sign(value)

@@ -2,19 +2,23 @@
 
 Nothing that decides where the search goes lives between two turns of the loop:
 each turn starts from what the database holds. Hence a study that was killed goes
-on exactly as if nothing had happened.
+on exactly as if nothing had happened. Trials are kept in their order; what was
+evaluated ahead of its turn and not kept is evaluated again.
 """
 
+import functools
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 from jaxtyping import Float
 
+from camring.interfaces.desk import Desk
 from camring.interfaces.executors import InThisProcess
 from camring.interfaces.interrupt import Interruption
 from camring.interfaces.record import SAFETY, Outcome, Record, failed
@@ -66,7 +70,22 @@ def search(
         When a signal came; whatever was completed is kept.
     StudyError
         When an evaluation cannot be kept.
+    WorkersGone
+        When the executor evaluates nothing any more; the same holds.
     """
+    evaluate = functools.partial(timed, task.evaluate, task.constraints)
+    lost = functools.partial(timed_loss, task.constraints)
+    with closing(Desk(executor, evaluate, lost, interruption.wait_for)) as desk:
+        return _turns(task, store, desk, interruption, watch)
+
+
+def _turns(
+    task: Search,
+    store: Store,
+    desk: "Desk[Timed]",
+    interruption: Interruption,
+    watch: Watcher,
+) -> str:
     thinking = InThisProcess()
     records = store.records()
     history = [as_seen_by_search(record, task.constraints) for record in records]
@@ -78,17 +97,16 @@ def search(
         proposal = interruption.run(thinking, task.strategy.propose, history, memory, task.seed)
         if isinstance(proposal, Stop):
             return proposal.reason
-        started, clock = time.time(), time.perf_counter()
-        outcome = interruption.run(
-            executor, evaluate_or_fail, task.evaluate, task.constraints, proposal.point
-        )
+        point, next_trial = np.asarray(proposal.point, dtype=float), len(history) + 1
+        ahead = task.strategy.ahead(next_trial, proposal.memory)[: task.budget - next_trial]
+        answer = desk.answer(point, ahead)
         record = Record(
             trial=len(history),
             phase=proposal.phase,
-            point=np.asarray(proposal.point, dtype=float),
-            outcome=outcome,
-            started=started,
-            seconds=time.perf_counter() - clock,
+            point=point,
+            outcome=answer.outcome,
+            started=answer.started,
+            seconds=answer.seconds,
         )
         surrogates = leave_one_out(proposal.memory) or surrogates
         facts = {"leave_one_out": json.dumps(surrogates)} if surrogates else {}
@@ -98,6 +116,31 @@ def search(
         memory = store.memory()
         watch(record)
     return f"The budget of {task.budget} evaluations is spent."
+
+
+@dataclass(frozen=True)
+class Timed:
+    """An outcome, when its evaluation began (s since 1970, UTC), how long it took (s)."""
+
+    outcome: Outcome
+    started: float
+    seconds: float
+
+
+def timed(
+    evaluate: Callable[[Float[np.ndarray, " dimension"]], Outcome],
+    constraints: Sequence[str],
+    point: Float[np.ndarray, " dimension"],
+) -> Timed:
+    """The outcome of a point, timed where it is evaluated."""
+    started, clock = time.time(), time.perf_counter()
+    outcome = evaluate_or_fail(evaluate, constraints, point)
+    return Timed(outcome, started, time.perf_counter() - clock)
+
+
+def timed_loss(constraints: Sequence[str], reason: str) -> Timed:
+    """Of a point whose evaluation was lost, and how long it took with it."""
+    return Timed(failed(reason, constraints), time.time(), 0.0)
 
 
 def evaluate_or_fail(

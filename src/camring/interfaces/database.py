@@ -121,6 +121,12 @@ def _in_words(error: sqlite3.Error, folder: Path) -> CamringError:
         )
     if name.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
         return InputError(where, "is in use by another program", "close that program and try again")
+    if name.startswith(("SQLITE_IOERR_SHM", "SQLITE_IOERR_LOCK", "SQLITE_PROTOCOL")):
+        return InputError(
+            where,
+            f"lies on a disk that keeps no locks ({error}), as some network disks do",
+            "choose a place on a disk of this machine, and copy the study afterwards",
+        )
     return InputError(
         where,
         f"is no readable study database ({error})",

@@ -48,7 +48,11 @@ class Interruption:
     def run(self, executor: Executor, function: Callable[..., Result], *arguments: Any) -> Result:
         """What the function returns; `Interrupted` when a signal comes first."""
         self.check()
-        future: Future[Result] = executor.submit(function, *arguments)
+        return self.wait_for(executor.submit(function, *arguments))
+
+    def wait_for(self, future: Future[Result]) -> Result:
+        """What comes of it; `Interrupted` when a signal comes first."""
+        self.check()
         while not wait([future], timeout=PATIENCE).done:
             self.check()
         return future.result()

@@ -13,11 +13,12 @@ import numpy as np
 import camring
 from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
 from camring.interfaces.config.document import decode, read_text
-from camring.interfaces.config.goal_tables import BAYESIAN
+from camring.interfaces.config.goal_tables import BAYESIAN, GRADIENT
 from camring.interfaces.coordinator import Search, search
+from camring.interfaces.desk import WorkersGone
 from camring.interfaces.errors import InputError
 from camring.interfaces.evaluator import MotorEvaluator
-from camring.interfaces.executors import InThisProcess
+from camring.interfaces.executors import InThisProcess, batch_of
 from camring.interfaces.finished import Finished
 from camring.interfaces.finishing import finish
 from camring.interfaces.interrupt import Interrupted, Interruption
@@ -55,6 +56,10 @@ class Silent:
         pass
 
 
+IDLE = (
+    "A descent by slopes asks for one design after another: workers help with the first "
+    "designs only, and --method bayesian keeps them busy."
+)
 Watch = Callable[[Sequence[Record], int], AbstractContextManager[Watcher]]
 
 
@@ -69,6 +74,7 @@ def optimise(
     evaluator: str | Sequence[str] | None = None,
     timeout: str | float | None = None,
     executor: Executor | None = None,
+    batch: int | None = None,
     watch: Watch = Silent,
 ) -> Finished:
     """Search for a better motor, validate it and report, all in a new folder.
@@ -91,7 +97,10 @@ def optimise(
         file's `[evaluator]`, which runs in the file's folder. Without either our
         simulation judges.
     executor
-        Where evaluations run; else in this process.
+        Where evaluations run, such as `camring.Workers(4)`; else in this process.
+    batch
+        Designs that a search without slopes chooses at once, on which its result depends
+        as it does on the seed; else as many as the executor has workers.
 
     Raises
     ------
@@ -111,6 +120,13 @@ def optimise(
     seed = motor_file.search.seed if seed is None else seed
     command = command_of(motor_file, evaluator, timeout)
     method = method_of(motor_file, method, command)
+    if batch is not None and method == GRADIENT:
+        raise InputError(
+            "--batch",
+            f"is {batch}, but a descent by slopes asks for one design after another",
+            "leave it out, or choose --method bayesian",
+        )
+    batch = batch_of(batch, executor)
     with Interruption() as interruption:
         try:
             first = interruption.run(InThisProcess(), _first_points, motor_file, theory)
@@ -120,6 +136,7 @@ def optimise(
             "seed": str(seed),
             "budget": str(budget),
             "method": method,
+            "batch": str(batch),
             "theory": str(theory).lower(),
             **({} if command is None else {"evaluator": to_fact(command)}),
             "first_points": json.dumps(first.tolist()),
@@ -144,6 +161,8 @@ def resume(
     ----------
     budget
         Another number of model evaluations in all; noted in the study.
+    executor
+        Where evaluations run; how many it runs at once changes no design.
     """
     study = StudyFolder.open(Path(folder), write=True)
     if budget is not None:
@@ -171,11 +190,15 @@ def _go_on(
         task = Search(
             evaluate=evaluator,
             constraints=motor_file.goal.constraints.names(),
-            strategy=strategy_for(motor_file, method, evaluator, first, budget),
+            strategy=strategy_for(
+                motor_file, method, evaluator, first, budget, int(facts.get("batch", "1"))
+            ),
             budget=budget,
             seed=int(facts["seed"]),
         )
         with watch(kept, budget) as watcher:
+            if method == GRADIENT and executor is not None:
+                watcher.say(IDLE)
             reason = search(task, study.store, executor or here, interruption, watcher)
             study.store.note(stopped=reason)
             watcher.say(reason)
@@ -187,6 +210,8 @@ def _go_on(
             f"Stopped with {count} evaluation{'s' * (count != 1)} kept; "
             f"`camring resume {study.path}` goes on."
         ) from None
+    except WorkersGone as error:
+        raise WorkersGone(f"{error} `camring resume {study.path}` goes on.") from error
     except OSError as error:
         raise unwritable(study.path, error) from error
     finally:

@@ -1,6 +1,5 @@
 """A user's own program: one JSON document in, one out, never trusted, never waited for too long."""
 
-import atexit
 import contextlib
 import json
 import math
@@ -15,11 +14,10 @@ from difflib import get_close_matches
 from typing import Any
 
 from camring.interfaces.errors import InputError, quote
+from camring.interfaces.leash import tied
 
 LONGEST_ANSWER = 10_000_000  # bytes
 Results = list[dict[str, float]]
-
-_running: set[subprocess.Popen] = set()
 
 
 class CommandFailed(Exception):
@@ -101,9 +99,9 @@ class OwnCommand:
             )
         except OSError as error:
             raise CommandFailed(f"it cannot be started ({error.strerror})") from None
-        _running.add(process)
         try:
-            answer, said = process.communicate(question.encode(), timeout=self.timeout)
+            with tied(process.pid):
+                answer, said = process.communicate(question.encode(), timeout=self.timeout)
         except subprocess.TimeoutExpired:
             raise CommandFailed(f"it took longer than {self.timeout:g} s and was stopped") from None
         finally:
@@ -120,7 +118,6 @@ class OwnCommand:
 
 def _stop(process: subprocess.Popen) -> None:
     """Ends a program and everything that it started and left behind."""
-    _running.discard(process)
     with contextlib.suppress(ProcessLookupError, PermissionError):
         if hasattr(os, "killpg"):
             os.killpg(process.pid, signal.SIGKILL)
@@ -131,12 +128,6 @@ def _stop(process: subprocess.Popen) -> None:
         if stream is not None:
             with contextlib.suppress(OSError):
                 stream.close()
-
-
-@atexit.register
-def _stop_all() -> None:
-    for process in list(_running):
-        _stop(process)
 
 
 def _last_words(said: bytes) -> str:

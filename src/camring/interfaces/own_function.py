@@ -2,12 +2,16 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from camring.interfaces.desk import Desk, WorkersGone
 from camring.interfaces.errors import InputError, quote
+from camring.interfaces.executors import batch_of
 from camring.interfaces.own_process import FunctionFailed, OwnProcess
 from camring.search.ask_tell import AskTell
 from camring.search.minimise import HOPELESS
@@ -54,6 +58,8 @@ def minimise_function(
     method: str = "bayesian",
     given: Sequence[Mapping[str, float]] = (),
     timeout: float | None = None,
+    executor: Executor | None = None,
+    batch: int | None = None,
     watch: Callable[[Row], None] = lambda row: None,
 ) -> FunctionMinimum:
     """Minimises a function of named numbers between bounds.
@@ -74,19 +80,26 @@ def minimise_function(
     budget
         Evaluations in all.
     method
-        "bayesian" or "nelder-mead".
+        "bayesian", "cma-es", "nelder-mead" or "scbo".
     given
         Designs to begin with, name to number.
     timeout
         Seconds after which an evaluation is stopped and counts as failed; the function
         then runs in a process of its own.
+    executor
+        Where the function runs, such as `camring.Workers(4)`; else here.
+    batch
+        Designs chosen at once, on which the result depends as it does on the seed; else
+        as many as the executor has workers.
     watch
         Called with each row of the history as it comes.
 
     Raises
     ------
     InputError
-        When bounds, names, budget, method or timeout cannot be used.
+        When bounds, names, budget, method, timeout or batch cannot be used.
+    WorkersGone
+        When the executor cannot carry out even the first evaluation.
     """
     box = _Box(variables)
     names = _names_of(constraints, box)
@@ -96,29 +109,40 @@ def minimise_function(
         raise InputError("method", f"is {quote(method)}", f"choose {' or '.join(WITHOUT_SLOPES)}")
     if timeout is not None and not timeout > 0:
         raise InputError("timeout", f"is {quote(timeout)}", "give seconds above zero")
+    if timeout is not None and executor is not None:
+        raise InputError("timeout", "is the executor's own affair", "give camring.Workers(4, 60)")
+    batch = batch_of(batch, executor)
     starts = tuple(box.located(place, design) for place, design in enumerate(given))
-    strategy = strategy_named(method, Task(len(box.names), budget, starts))
+    strategy = strategy_named(method, Task(len(box.names), budget, starts, batch=batch))
     asking = AskTell(strategy, len(names), seed)
-    elsewhere = OwnProcess(function, timeout) if timeout is not None else None
     history: list[Row] = []
-    try:
+    with ExitStack() as stack:
+        if timeout is not None:
+            function = stack.enter_context(closing(OwnProcess(function, timeout)))
+        judge = _Judge(function, box, names)
+        desk = None
+        if executor is not None:
+            desk = stack.enter_context(closing(Desk(executor, judge, judge.lost)))
         reason = f"The budget of {budget} evaluations is spent."
         while len(history) < budget:
             point = asking.ask()
             if isinstance(point, Stop):
                 reason = point.reason
                 break
-            values = box.values(point)
-            answer = _answer(function, elsewhere, values, names)
+            ahead = asking.ahead()[: budget - len(history) - 1]
+            try:
+                answer = judge(point) if desk is None else desk.answer(point, ahead)
+            except WorkersGone as error:
+                if not history:
+                    raise
+                reason = str(error)
+                break
             told = asking.tell(answer.objective, answer.constraints, answer.failure)
-            history.append(_row(told, values, names, answer))
+            history.append(_row(told, box.values(point), names, answer))
             watch(history[-1])
             if len(history) == HOPELESS and all(one.failed for one in asking.history):
                 reason = f"The first {HOPELESS} evaluations all failed; the last: {told.failure}."
                 break
-    finally:
-        if elsewhere is not None:
-            elsewhere.close()
     best = best_of(asking.history)
     return FunctionMinimum(
         None if best is None else history[best.trial],
@@ -185,22 +209,27 @@ def _names_of(constraints: Sequence[str], box: _Box) -> tuple[str, ...]:
     return names
 
 
-def _answer(
-    function: Callable[..., Any],
-    elsewhere: OwnProcess | None,
-    values: Mapping[str, float],
-    names: Sequence[str],
-) -> _Answer:
-    try:
-        found = function(**values) if elsewhere is None else elsewhere(values)
-        return _read(found, names)
-    except FunctionFailed as error:
-        failure = str(error)
-    except InputError:
-        raise
-    except Exception as error:  # recorded, not fatal: one bad design must not end a search
-        failure = f"{type(error).__name__}: {error}"
-    return _Answer(math.nan, [math.nan] * len(names), failure, {})
+@dataclass(frozen=True)
+class _Judge:
+    """Asks the function of a point, here or wherever it is sent."""
+
+    function: Callable[..., Any]
+    box: _Box
+    names: tuple[str, ...]
+
+    def __call__(self, point: np.ndarray) -> _Answer:
+        try:
+            return _read(self.function(**self.box.values(point)), self.names)
+        except FunctionFailed as error:
+            return self.lost(str(error))
+        except InputError:
+            raise
+        except Exception as error:  # recorded, not fatal: one bad design must not end a search
+            return self.lost(f"{type(error).__name__}: {error}")
+
+    def lost(self, reason: str) -> _Answer:
+        """No answer, and why."""
+        return _Answer(math.nan, [math.nan] * len(self.names), reason, {})
 
 
 def _read(found: Any, names: Sequence[str]) -> _Answer:

@@ -1,16 +1,19 @@
-"""A user's function in a process of its own, which can be stopped when its time is up.
+"""A function in a process of its own, which can be stopped when its time is up.
 
 A thread cannot be stopped, and a function that crashes its process would take the
 search along. One process serves every call and is replaced when it had to be killed.
 """
 
+import atexit
 import pickle
-from collections.abc import Callable, Mapping
+import signal
+from collections.abc import Callable
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Any
 
 from camring.interfaces.errors import InputError
+from camring.interfaces.leash import end_with_parent
 
 PATIENCE = 120.0  # seconds for a new process to import what the function needs
 READY = "ready"
@@ -20,8 +23,23 @@ class FunctionFailed(Exception):
     """The function gave no answer; the text says why."""
 
 
+class ProcessEnded(FunctionFailed):
+    """Its process ended before it gave an answer."""
+
+
+def nothing() -> None:
+    """What most processes need before their first call."""
+
+
 class OwnProcess:
-    """Calls `function(**values)` elsewhere, each call for at most so many seconds.
+    """Calls a function elsewhere, each call for at most so many seconds.
+
+    Parameters
+    ----------
+    timeout
+        Seconds; None waits for ever.
+    prepare
+        Called in the process before anything else.
 
     Raises
     ------
@@ -29,7 +47,12 @@ class OwnProcess:
         When the function cannot travel to another process.
     """
 
-    def __init__(self, function: Callable[..., Any], timeout: float) -> None:
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        timeout: float | None,
+        prepare: Callable[[], None] = nothing,
+    ) -> None:
         try:
             pickle.dumps(function)
         except Exception:
@@ -38,11 +61,11 @@ class OwnProcess:
                 "cannot be sent to a process of its own, which a timeout needs",
                 "define it with `def` at the top of a file, or leave timeout out",
             ) from None
-        self._function, self._timeout = function, timeout
+        self._function, self._timeout, self._prepare = function, timeout, prepare
         self._process: Any = None
         self._line: Connection | None = None
 
-    def __call__(self, values: Mapping[str, float]) -> Any:
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
         """What the function returns.
 
         Raises
@@ -50,24 +73,31 @@ class OwnProcess:
         FunctionFailed
             When it raised, took too long, or its process ended.
         """
+        call = pickle.dumps((arguments, named))
         line = self._connected()
         try:
-            line.send(dict(values))
+            line.send_bytes(call)
             if not line.poll(self._timeout):
                 self.close()
                 raise FunctionFailed(f"it took longer than {self._timeout:g} s and was stopped")
             failure, answer = line.recv()
         except (EOFError, OSError):
-            raise FunctionFailed(self._ended()) from None
+            raise ProcessEnded(self._ended()) from None
         if failure:
             raise FunctionFailed(failure)
         return answer
+
+    def kill(self) -> None:
+        """Ends a call under way, from another thread; the call then raises `ProcessEnded`."""
+        if (process := self._process) is not None:
+            process.kill()
 
     def close(self) -> None:
         """Ends the process; the next call starts another."""
         if self._process is not None:
             self._process.kill()
             self._process.join()
+            atexit.unregister(self._process.kill)
             self._process = None
         if self._line is not None:
             self._line.close()
@@ -78,8 +108,13 @@ class OwnProcess:
             return self._line
         context = get_context("spawn")  # a fork of a process with JAX's threads may hang
         ours, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, self._function), daemon=True)
-        self._process.start()
+        # No daemon, which could have no processes of its own; hence killed at exit by hand.
+        process = context.Process(
+            target=_serve, args=(theirs, self._function, self._prepare), daemon=False
+        )
+        process.start()
+        atexit.register(process.kill)
+        self._process = process
         theirs.close()
         self._line = ours
         try:
@@ -99,18 +134,25 @@ class OwnProcess:
         self._process.join(1.0)
         code = self._process.exitcode
         self.close()
+        if code is not None and code < 0:
+            return f"its process was ended by signal {-code}"
         return f"its process ended with exit code {code}"
 
 
-def _serve(line: Connection, function: Callable[..., Any]) -> None:
+def _serve(line: Connection, function: Callable[..., Any], prepare: Callable[[], None]) -> None:
+    end_with_parent()
+    # Ctrl-C comes to every process of a terminal; whoever started this one decides.
+    signal.signal(signal.SIGINT, lambda number, frame: None)
+    prepare()
     line.send(READY)
     while True:
         try:
-            values = line.recv()
+            call = line.recv_bytes()
         except EOFError:
             return
         try:
-            answer: tuple[str | None, Any] = (None, function(**values))
+            arguments, named = pickle.loads(call)
+            answer: tuple[str | None, Any] = (None, function(*arguments, **named))
         except Exception as error:
             answer = (f"{type(error).__name__}: {error}", None)
         try:

@@ -40,8 +40,9 @@ def strategy_for(
     evaluator: MotorEvaluator | OwnEvaluator,
     first: Sequence[Float[np.ndarray, " dimension"]],
     budget: int,
+    batch: int = 1,
 ) -> AbstractStrategy:
-    """Descent by exact slopes, or Bayesian search and then a simplex."""
+    """Descent by exact slopes, or Bayesian search, in batches, and then a simplex."""
     space = motor_file.design_space
     assert space is not None
     settings = motor_file.search
@@ -57,5 +58,6 @@ def strategy_for(
         mode="penalised" if settings.mode == "penalised" else "separate",
         penalty_weight=motor_file.goal.weights.penalty,
         kappa=settings.kappa,
+        batch=batch,
     )
     return then_simplex(learning, budget, settings.refinement)

@@ -163,6 +163,12 @@ def unwritable(path: Path, error: OSError) -> InputError | StudyError:
             f"The disk of {path} takes no more ({error.strerror}): every evaluation completed "
             f"before is kept; make room, then `camring resume` goes on."
         )
+    if error.errno in (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP):
+        return InputError(
+            str(path),
+            f"lies on a disk that keeps no locks ({error.strerror}), as some network disks do",
+            "choose a place on a disk of this machine, and copy the study afterwards",
+        )
     return InputError(
         str(path),
         f"cannot be written ({error.strerror})",

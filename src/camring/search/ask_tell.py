@@ -71,6 +71,12 @@ class AskTell:
             self._asked = answer
         return np.array(self._asked.point, dtype=float)
 
+    def ahead(self) -> list[Float[np.ndarray, " dimension"]]:
+        """Points that come after the one last asked for, whatever is told of it."""
+        if self._asked is None:
+            return []
+        return self._strategy.ahead(len(self._history) + 1, self._asked.memory)
+
     def tell(
         self,
         objective: float,

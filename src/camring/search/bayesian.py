@@ -3,10 +3,14 @@
 Trials take turns between the whole box, where a lower confidence bound explores,
 and a trust region around the best point, where the surrogate is exact enough to
 refine it.
+
+In a batch each point is chosen as if those before it had brought what the surrogate
+expects of them: the "Kriging believer" of Ginsbourger et al. (2010), Kriging is
+well-suited to parallelize optimization.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -29,6 +33,8 @@ from camring.search.sampling import generator, initial_point, sobol
 from camring.search.surrogate import Surrogate, build
 from camring.search.threads import one_linear_algebra_thread
 from camring.search.trust_region import TrustRegion
+
+Point = Float[np.ndarray, " dimension"]
 
 EXPLORE, REFINE = "explore", "refine"
 FEWEST_TO_LEARN_FROM = 3
@@ -62,6 +68,8 @@ class Bayesian(AbstractStrategy):
         dimensions and 4 above, where most of the box is beyond reach anyway.
     model_size, fit_size
         At most so many evaluations enter the surrogate, and the likelihood.
+    batch
+        Points chosen at once, none of which knows the others' results.
     separation
         No point is proposed within this Euclidean distance of an earlier one.
     tolerance
@@ -80,11 +88,14 @@ class Bayesian(AbstractStrategy):
     convergence: Convergence | None = USUAL_CONVERGENCE
     model_size: int = 256
     fit_size: int = 256
+    batch: int = 1
     separation: float = 1e-5
     tolerance: float = 0.0
 
     def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
         """The next point: of the initial design, of the whole box, or near the best."""
+        if (waiting := Proposal.waiting(memory)) is not None:
+            return waiting
         with one_linear_algebra_thread():
             return self._next(history, memory, seed)
 
@@ -93,39 +104,51 @@ class Bayesian(AbstractStrategy):
         initial = 2 * self.dimension + 2 if self.initial is None else self.initial
         learnable = sum(not evaluation.failed for evaluation in history)
         if trial < max(initial, len(self.given)) or learnable < FEWEST_TO_LEARN_FROM:
-            point = initial_point(trial, self.dimension, seed, self.given)
-            return Proposal(self._apart(point, (), history, seed), "initial")
+            count = max(initial - trial, len(self.given) - trial, self.batch)
+            return Proposal.of_batch(self._design(history, count, seed), "initial", memory)
         if self.convergence is not None:
             reason = self.convergence.reason(history, initial, self.tolerance)
             if reason is not None:
                 return Stop(reason)
 
         best = min(history, key=self._rank)
-        surrogate = self._surrogate(history, best, memory)
-        trusted = self._trusted(history, best, memory)
+        learned = self._learned(history, best, memory)
+        trusted = self._trusted(history, memory)
         usual = self.explore_every or (2 if self.dimension <= FEW_DIMENSIONS else 4)
         period = usual if trusted.collapses == 0 else min(usual, 2)
-        turn, rest = divmod(trial - initial, period)
-        step = EXPLORE if rest == 0 else REFINE
-        if step == EXPLORE:
-            region = Region.everything(self.dimension)
-            criterion = Criterion(self.kappa * (1 + turn % 2), caution=-1.0)
-        else:
-            region = trusted.around(best.point)
-            criterion = Criterion(self.refining_kappa, trusted.caution)
-        random = generator(seed, trial)
-        suggestions = suggest(
-            surrogate, region, criterion, best.point, random, starts=2 if step == EXPLORE else 1
-        )
-        point = self._apart(
-            suggestions[0].point, [one.point for one in suggestions[1:]], history, seed
-        )
+        points: list[Point] = []
+        steps: list[str] = []
+        surrogate = self._conditioned(history, best, learned)
+        for place in range(self.batch):
+            if place > 0:
+                history = [*history, self._believed(surrogate, points[-1], history)]
+                surrogate = self._conditioned(history, best, learned)
+            turn, rest = divmod(len(history) - initial, period)
+            steps.append(EXPLORE if rest == 0 else REFINE)
+            if steps[-1] == EXPLORE:
+                region = Region.everything(self.dimension)
+                criterion, starts = Criterion(self.kappa * (1 + turn % 2), caution=-1.0), 2
+            else:
+                region = trusted.around(best.point)
+                criterion, starts = Criterion(self.refining_kappa, trusted.caution), 1
+            random = generator(seed, len(history))
+            found = suggest(surrogate, region, criterion, best.point, random, starts)
+            taken = [one.point for one in history]
+            points.append(self._apart([each.point for each in found], taken, seed))
         kept = {
-            "learned": surrogate.learned.to_memory(),
+            "learned": learned.to_memory(),
             "trust_region": trusted.to_memory(),
-            "step": step,
+            "steps": steps,
         }
-        return Proposal(point, "bayesian", kept)
+        return Proposal.of_batch(points, "bayesian", kept)
+
+    def _design(self, history: Sequence[Evaluation], count: int, seed: int) -> list[Point]:
+        """Points that lean on no evaluation."""
+        taken = [one.point for one in history]
+        for place in range(len(history), len(history) + count):
+            point = initial_point(place, self.dimension, seed, self.given)
+            taken.append(self._apart([point], taken, seed))
+        return taken[len(history) :]
 
     def _rank(self, evaluation: Evaluation) -> tuple[float, float]:
         """Sorts evaluations, best first, by what this mode minimises."""
@@ -134,44 +157,57 @@ class Bayesian(AbstractStrategy):
         excess = np.maximum(evaluation.constraints, 0.0)
         return 0.0, evaluation.objective + self.penalty_weight * float(np.sum(excess**2))
 
-    def _surrogate(
-        self, history: Sequence[Evaluation], best: Evaluation, memory: Memory
-    ) -> Surrogate:
+    def _dataset(self, history: Sequence[Evaluation], best: Evaluation) -> Dataset:
         weight = self.penalty_weight if self.mode == "penalised" else None
-        dataset: Dataset = collect(history, best.point, weight)
-        if self.approximate is None:
-            dataset = dataset.without_approximation()
+        dataset = collect(history, best.point, weight)
+        return dataset.without_approximation() if self.approximate is None else dataset
+
+    def _learned(self, history: Sequence[Evaluation], best: Evaluation, memory: Memory) -> Learned:
+        dataset = self._dataset(history, best)
         before = Learned.from_memory(memory["learned"]) if "learned" in memory else None
         centre = float(dataset.objective[best.trial])
-        learned = learn(dataset.nearest(self.fit_size), len(history), centre, before)
+        return learn(dataset.nearest(self.fit_size), len(history), centre, before, self.batch)
+
+    def _conditioned(
+        self, history: Sequence[Evaluation], best: Evaluation, learned: Learned
+    ) -> Surrogate:
+        dataset = self._dataset(history, best)
         return build(dataset.nearest(self.model_size), learned, self.approximate)
 
-    def _trusted(
-        self, history: Sequence[Evaluation], best: Evaluation, memory: Memory
-    ) -> TrustRegion:
-        """The trust region after the last trial."""
+    def _believed(
+        self, surrogate: Surrogate, point: Point, history: Sequence[Evaluation]
+    ) -> Evaluation:
+        """What is expected of the point, for those chosen after it in its batch."""
+        expected = surrogate.expected(point, len(history))
+        if self.mode == "penalised":  # its objective has the penalty in it already
+            return replace(expected, constraints=np.zeros_like(history[-1].constraints))
+        return expected
+
+    def _trusted(self, history: Sequence[Evaluation], memory: Memory) -> TrustRegion:
+        """The trust region after what the last batch brought."""
         if "trust_region" not in memory:
             return TrustRegion()
-        trusted, last = TrustRegion(**memory["trust_region"]), history[-1]
-        improved = last is best
-        if memory["step"] == REFINE:
-            return trusted.after_step(improved, last.feasible(self.tolerance))
-        return trusted.after_discovery() if improved else trusted
+        trusted = TrustRegion(**memory["trust_region"])
+        steps: list[str] = memory["steps"] if "steps" in memory else [memory["step"]]
+        begun = len(history) - len(steps)
+        lead = min(map(self._rank, history[:begun]))
+        brought = list(zip(steps, history[begun:], strict=True))
+        refined = [one for step, one in brought if step == REFINE]
+        if any(step == EXPLORE and self._rank(one) < lead for step, one in brought):
+            trusted = trusted.after_discovery()
+        if not refined:
+            return trusted
+        improved = any(self._rank(one) < lead for one in refined)
+        return trusted.after_step(improved, refined[0].feasible(self.tolerance))
 
-    def _apart(
-        self,
-        point: Float[np.ndarray, " dimension"],
-        alternatives: Sequence[Float[np.ndarray, " dimension"]],
-        history: Sequence[Evaluation],
-        seed: int,
-    ) -> Float[np.ndarray, " dimension"]:
-        """The point, or the first alternative, that is not where one was evaluated already."""
-        evaluated = np.array([evaluation.point for evaluation in history])
-        if apart(point, evaluated, self.separation):
-            return point
-        anywhere = sobol(64, self.dimension, generator(seed, len(history), stream=1))
-        for other in (*alternatives, *anywhere):
-            if apart(other, evaluated, self.separation):
+    def _apart(self, wanted: Sequence[Point], taken: Sequence[Point], seed: int) -> Point:
+        """The first that is not where something was evaluated or will be; else a random one."""
+        before = np.array(taken).reshape(-1, self.dimension)
+        if apart(wanted[0], before, self.separation):
+            return wanted[0]
+        anywhere = sobol(64, self.dimension, generator(seed, len(taken), stream=1))
+        for other in (*wanted[1:], *anywhere):
+            if apart(other, before, self.separation):
                 return other
         return anywhere[0]
 

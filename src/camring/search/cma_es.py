@@ -39,7 +39,7 @@ class CmaEs(AbstractStrategy):
     population
         Points of a generation; None is 4 + 3 log(dimension).
     batch
-        A generation is no smaller than this.
+        Workers: a generation is a multiple of it, so that none of them waits.
     """
 
     dimension: int
@@ -51,22 +51,15 @@ class CmaEs(AbstractStrategy):
 
     def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
         """The next point of the generation; after its last one, the first of another."""
-        queue = memory.get("ahead", [])
-        kept = memory
-        if not queue:
-            kept = self._generation(history, memory, seed)
-            queue = kept["ahead"]
-        return Proposal(
-            np.array(queue[0], dtype=float), kept["phase"], {**kept, "ahead": queue[1:]}
-        )
+        return Proposal.waiting(memory) or self._generation(history, memory, seed)
 
-    def _generation(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Memory:
+    def _generation(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal:
         trial = len(history)
         if not memory:
             wanted = self.dimension + 2 if self.initial is None else self.initial
             count = max(wanted, len(self.given), 1)
             points = [initial_point(i, self.dimension, seed, self.given) for i in range(count)]
-            return {"phase": "initial", "ahead": [point.tolist() for point in points]}
+            return Proposal.of_batch(points, "initial", {})
         random = generator(seed, trial)
         if "mean" not in memory:
             best = min(history, key=lambda one: one.rank(self.tolerance))
@@ -79,12 +72,13 @@ class CmaEs(AbstractStrategy):
         roots, axes = _principal(np.array(state["covariance"]))
         steps = (random.normal(size=(state["population"], self.dimension)) * roots) @ axes.T
         steps *= state["sigma"]
-        queue = [reflected(mean + step).tolist() for step in steps]
-        return {**state, "phase": "cma-es", "begun": trial, "steps": steps.tolist(), "ahead": queue}
+        points = [reflected(mean + step) for step in steps]
+        kept = {**state, "begun": trial, "steps": steps.tolist()}
+        return Proposal.of_batch(points, "cma-es", kept)
 
     def _usual_population(self) -> int:
         usual = self.population or 4 + int(3 * math.log(max(self.dimension, 1)))
-        return max(usual, self.batch, 4)
+        return -(-max(usual, 4) // self.batch) * self.batch
 
     def _fresh(self, mean: Float[np.ndarray, " dimension"], population: int) -> dict[str, Any]:
         nothing = [0.0] * self.dimension

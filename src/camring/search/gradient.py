@@ -90,10 +90,12 @@ class GradientSearch(AbstractStrategy):
 
     def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
         """The next point: of the initial design, or of the descent under way."""
+        if (waiting := Proposal.waiting(memory)) is not None:
+            return waiting
         if len(history) < self.initial:
-            return Proposal(
-                initial_point(len(history), self.dimension, seed, self.given), "initial"
-            )
+            places = range(len(history), self.initial)
+            design = [initial_point(place, self.dimension, seed, self.given) for place in places]
+            return Proposal.of_batch(design, "initial", {})
         starts: list[int] = list(memory.get("starts", ()))
         ends: list[int] = list(memory.get("ends", ()))
         with one_linear_algebra_thread():

@@ -48,8 +48,11 @@ class Hybrid(AbstractStrategy):
             memories.append({})
         return Stop(" ".join(notes) or "There is no stage.")
 
-    def ahead(self, memory: Memory) -> list[Float[np.ndarray, " dimension"]]:
+    def ahead(self, trial: int, memory: Memory) -> list[Float[np.ndarray, " dimension"]]:
         """Of the stage whose turn it is, as far as its budget goes."""
-        memories: list[Memory] = memory.get("memories", [{}])
-        place = len(memories) - 1
-        return self.stages[place].strategy.ahead(memories[place]) if self.stages[place:] else []
+        memories: list[Memory] = memory.get("memories", [])
+        if not 0 < len(memories) <= len(self.stages):
+            return []
+        stage = self.stages[len(memories) - 1]
+        left = None if stage.budget is None else max(0, memory["begun"] + stage.budget - trial)
+        return stage.strategy.ahead(trial, memories[-1])[:left]

@@ -88,7 +88,9 @@ class Learned:
         )
 
 
-def learn(dataset: Dataset, trial: int, centre: float, before: Learned | None) -> Learned:
+def learn(
+    dataset: Dataset, trial: int, centre: float, before: Learned | None, batch: int = 1
+) -> Learned:
     """Hyper-parameters for this data set, starting from what was known before.
 
     Parameters
@@ -97,10 +99,12 @@ def learn(dataset: Dataset, trial: int, centre: float, before: Learned | None) -
         How many evaluations there are in all, which sets the schedule.
     centre
         Value of the objective about which it may be warped: the best one.
+    batch
+        Trials from one call to the next.
     """
     if before is None or trial >= GROWTH_TO_RELEARN * before.learned_at:
         return _learn_afresh(dataset, trial, centre, before)
-    return _refit(dataset, trial, before)
+    return _refit(dataset, trial, before, batch)
 
 
 def objective_rows(mean: ResidualMean, dataset: Dataset, warp: Warp) -> Observations:
@@ -180,14 +184,13 @@ def _from_several_starts(observations: Observations, known: Sequence[Fitted]) ->
     return fit_with_axes(observations, fitted, density, known)[0]
 
 
-def _refit(dataset: Dataset, trial: int, before: Learned) -> Learned:
+def _refit(dataset: Dataset, trial: int, before: Learned, batch: int) -> Learned:
     restrictions = list(before.restrictions)
     fewer = dataset.nearest(MOST_RESTRICTION_ROWS)
     count = fewer.restrictions.shape[1]
     while len(restrictions) < count:  # the first failure adds an output
         restrictions.append(_learn_restriction(fewer, len(restrictions), []))
-    if count:
-        turn = trial % count
+    for turn in [(trial + place) % count for place in range(min(batch, count))]:
         fitted, warp = restrictions[turn]
         restrictions[turn] = _warm(restriction_rows(fewer, turn, warp), fitted), warp
     learned = replace(before, restrictions=tuple(restrictions))

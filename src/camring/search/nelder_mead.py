@@ -167,6 +167,11 @@ class NelderMead(AbstractStrategy):
                 return Proposal(point, "nelder-mead", state.to_memory())
             state = self._absorbed(state, known, history)
 
+    def ahead(self, trial: int, memory: Memory) -> list[Float[np.ndarray, " dimension"]]:
+        """Vertices of a simplex that is being built or shrunk; every other move is one point."""
+        queue = memory.get("queue", ())
+        return [to_box(np.array(angles)) for angles in queue[1:]]
+
     def rank(self, evaluation: Evaluation) -> Rank:
         """What the simplex compares; smaller is better."""
         if self.penalty_weight is None or evaluation.failed:

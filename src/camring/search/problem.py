@@ -105,6 +105,23 @@ class Proposal:
     phase: str
     memory: Memory = field(default_factory=dict)  # JSON: only text, numbers, lists, dictionaries
 
+    @staticmethod
+    def of_batch(
+        points: Sequence[Float[np.ndarray, " dimension"]], phase: str, memory: Memory
+    ) -> "Proposal":
+        """The first of points chosen together; the others wait in the memory."""
+        rest = [point.tolist() for point in points[1:]]
+        return Proposal(points[0], phase, {**memory, "phase": phase, "ahead": rest})
+
+    @staticmethod
+    def waiting(memory: Memory) -> "Proposal | None":
+        """The next point of the batch at hand; None when it is used up."""
+        rest = memory.get("ahead")
+        if not rest:
+            return None
+        kept = {**memory, "ahead": rest[1:]}
+        return Proposal(np.array(rest[0], dtype=float), memory["phase"], kept)
+
 
 @dataclass(frozen=True)
 class Stop:
@@ -130,11 +147,18 @@ class AbstractStrategy(abc.ABC):
             The only source of chance.
         """
 
-    def ahead(self, memory: Memory) -> list[Float[np.ndarray, " dimension"]]:
+    def ahead(self, trial: int, memory: Memory) -> list[Float[np.ndarray, " dimension"]]:
         """The points that will be proposed next whatever the evaluations bring, in order.
 
         Several workers evaluate them at once. A strategy that thinks in batches keeps
         the rest of its batch in its memory, as `ahead`.
+
+        Parameters
+        ----------
+        trial
+            Which the first of them will be.
+        memory
+            Of the proposal before it.
         """
         return [np.array(point, dtype=float) for point in memory.get("ahead", ())]
 

@@ -80,18 +80,12 @@ class Scbo(AbstractStrategy):
 
     def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
         """The next point of the batch at hand; when it is used up, the first of a new one."""
-        queue = memory.get("ahead", [])
-        if queue:
-            kept = {**memory, "ahead": queue[1:]}
-            return Proposal(np.array(queue[0], dtype=float), memory["phase"], kept)
+        if (waiting := Proposal.waiting(memory)) is not None:
+            return waiting
         with one_linear_algebra_thread():
-            points, kept = self._batch(history, memory, seed)
-        rest = [point.tolist() for point in points[1:]]
-        return Proposal(points[0], kept["phase"], {**kept, "ahead": rest})
+            return self._batch(history, memory, seed)
 
-    def _batch(
-        self, history: Sequence[Evaluation], memory: Memory, seed: int
-    ) -> tuple[list[Point], Memory]:
+    def _batch(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal:
         trial = len(history)
         since, region = memory.get("since", 0), self._region(history, memory)
         if region.collapses > memory.get("collapses", 0):
@@ -106,12 +100,14 @@ class Scbo(AbstractStrategy):
             **({"learned": memory["learned"]} if "learned" in memory else {}),
         }
         if missing > 0 or learnable < FEWEST_TO_LEARN_FROM:
-            return self._design(history, max(missing, self.batch), seed), {**kept, "phase": INITIAL}
+            return Proposal.of_batch(
+                self._design(history, max(missing, self.batch), seed), INITIAL, kept
+            )
         best = min(history[since:], key=lambda one: one.rank(self.tolerance))
         surrogate = self._surrogate(history, best, memory)
         kept["learned"] = surrogate.learned.to_memory()
         points = self._points(history, surrogate, region, best.point, seed)
-        return points, {**kept, "phase": SEARCHING}
+        return Proposal.of_batch(points, SEARCHING, kept)
 
     def _initial(self, trial: int) -> int:
         wanted = self.dimension + 2 if self.initial is None else self.initial
@@ -151,7 +147,8 @@ class Scbo(AbstractStrategy):
         before = Learned.from_memory(memory["learned"]) if "learned" in memory else None
         centre = float(dataset.objective[best.trial])
         near = dataset.nearest(self.model_size)
-        return build(near, learn(near, len(history), centre, before), self.approximate)
+        learned = learn(near, len(history), centre, before, self.batch)
+        return build(near, learned, self.approximate)
 
     def _points(
         self,

@@ -30,6 +30,8 @@ class Task:
         Cheap approximation of the objective, (k, dimension) to (k,), or None.
     slopes
         Gradients of objective and constraints at a point, or None.
+    batch
+        Points to choose at once: as many as there are workers.
     """
 
     dimension: int
@@ -37,16 +39,22 @@ class Task:
     given: tuple[tuple[float, ...], ...] = ()
     approximate: Callable[[Points], Float[np.ndarray, " points"]] | None = None
     slopes: Slopes | None = None
+    batch: int = 1
 
 
 def then_simplex(learning: Bayesian, budget: int, share: float = SHARE_OF_REFINEMENT) -> Hybrid:
-    """A Bayesian search whose last share of the budget refines its best point by a simplex."""
-    first = max(budget - int(share * budget), len(learning.given))
+    """A Bayesian search whose last share of the budget refines its best point by a simplex.
+
+    With batches it is a share of the time: a simplex has use for one worker only.
+    """
+    first = max(budget - int(share * budget / learning.batch), len(learning.given))
     return Hybrid((Stage(learning, first), Stage(NelderMead(learning.dimension), None)))
 
 
 def _bayesian(task: Task) -> AbstractStrategy:
-    learning = Bayesian(task.dimension, approximate=task.approximate, given=task.given)
+    learning = Bayesian(
+        task.dimension, approximate=task.approximate, given=task.given, batch=task.batch
+    )
     return then_simplex(learning, task.budget)
 
 
@@ -55,11 +63,11 @@ def _nelder_mead(task: Task) -> AbstractStrategy:
 
 
 def _scbo(task: Task) -> AbstractStrategy:
-    return Scbo(task.dimension, approximate=task.approximate, given=task.given)
+    return Scbo(task.dimension, approximate=task.approximate, given=task.given, batch=task.batch)
 
 
 def _cma_es(task: Task) -> AbstractStrategy:
-    return CmaEs(task.dimension, given=task.given)
+    return CmaEs(task.dimension, given=task.given, batch=task.batch)
 
 
 def _gradient(task: Task) -> AbstractStrategy:

@@ -21,7 +21,7 @@ from camring.search.gaussian_process import (
     predict_each,
 )
 from camring.search.learning import Learned, objective_rows, restriction_rows
-from camring.search.problem import Points
+from camring.search.problem import Evaluation, Points
 from camring.search.residual_mean import ResidualMean, basis_columns, offset
 
 Approximation: TypeAlias = Callable[[Points], Float[np.ndarray, " points"]]
@@ -73,6 +73,20 @@ class Surrogate:
         means = np.array(mean).T
         means[:, 0] += offset(self.learned.mean, warped)
         return means, np.sqrt(np.asarray(variance)).T
+
+    def expected(self, point: Float[np.ndarray, " dimension"], trial: int) -> Evaluation:
+        """The evaluation that would surprise no process: all means come true."""
+        means = self.predict(point[None])[0][0]
+        limits = self.learned.restrictions[: self.outputs - 1 - self.failures]
+        return Evaluation(
+            trial,
+            point,
+            float(self.learned.objective_warp.undone(means[0])),
+            np.array(
+                [warp.undone(mean) for mean, (_, warp) in zip(means[1:], limits, strict=False)]
+            ),
+            float(self.approximate(point[None])[0]) if self.approximate else np.nan,
+        )
 
     def basis(
         self, points: Float[np.ndarray, "points dimension"]

@@ -32,6 +32,12 @@ class Warp:
             return shifted
         return self.scale * np.sign(shifted) * np.log1p(np.abs(shifted) / self.scale)
 
+    def undone(self, warped: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
+        """The values that are so when warped."""
+        if np.isfinite(self.scale):
+            warped = self.scale * np.sign(warped) * np.expm1(np.abs(warped) / self.scale)
+        return np.asarray(warped, dtype=float) + self.centre
+
     def slope(self, values: Float[np.ndarray, "*shape"]) -> Float[np.ndarray, "*shape"]:
         """Derivative of the warped value with respect to the value, in (0, 1]."""
         if not np.isfinite(self.scale):

@@ -50,6 +50,22 @@ def optimise(
         str | None,
         typer.Option(help="When to stop it, such as '5 min'; else that of the file, or 600 s."),
     ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, help="Processes that evaluate at once; else this one does."),
+    ] = None,
+    dask: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="A dask.distributed cluster that evaluates, such as tcp://host:8786 "
+            "(docs/guide/many-machines.md).",
+        ),
+    ] = None,
+    batch: Annotated[
+        int | None,
+        typer.Option(min=1, help="Designs to choose at once; else as many as there are workers."),
+    ] = None,
     json: Annotated[
         bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
     ] = False,
@@ -60,19 +76,23 @@ def optimise(
     and study.sqlite, which holds every evaluation. Ctrl-C stops at any time and
     loses nothing; `camring resume FOLDER` goes on.
     """
+    from camring.interfaces.executors import chosen_executor
     from camring.interfaces.finished import show
     from camring.interfaces.optimisation import optimise
     from camring.interfaces.progress import SearchProgress
 
-    finished = optimise(
-        motor,
-        out,
-        budget=budget,
-        seed=seed,
-        method=method and method.value,
-        theory=theory,
-        evaluator=evaluator,
-        timeout=timeout,
-        watch=SearchProgress,
-    )
+    with chosen_executor(workers, dask) as executor:
+        finished = optimise(
+            motor,
+            out,
+            budget=budget,
+            seed=seed,
+            method=method and method.value,
+            theory=theory,
+            evaluator=evaluator,
+            timeout=timeout,
+            executor=executor,
+            batch=batch,
+            watch=SearchProgress,
+        )
     raise typer.Exit(show(finished, as_json=json))

@@ -12,6 +12,14 @@ def resume(
         int | None,
         typer.Option(min=1, help="Model evaluations in all; else that which the study began with."),
     ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, help="Processes that evaluate at once; else this one does."),
+    ] = None,
+    dask: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="A dask.distributed cluster that evaluates."),
+    ] = None,
     json: Annotated[
         bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
     ] = False,
@@ -19,10 +27,14 @@ def resume(
     """Go on with a study as if it had never stopped.
 
     The designs that follow are the same, bit for bit, as those of a study that
-    was not interrupted. A study that has ended is checked and reported again.
+    was not interrupted, whatever evaluates them. A study that has ended is checked and
+    reported again.
     """
+    from camring.interfaces.executors import chosen_executor
     from camring.interfaces.finished import show
     from camring.interfaces.optimisation import resume
     from camring.interfaces.progress import SearchProgress
 
-    raise typer.Exit(show(resume(folder, budget=budget, watch=SearchProgress), as_json=json))
+    with chosen_executor(workers, dask) as executor:
+        finished = resume(folder, budget=budget, executor=executor, watch=SearchProgress)
+    raise typer.Exit(show(finished, as_json=json))
