@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     )
     from camring.interfaces.config import MotorFile, read_motor_file
     from camring.interfaces.errors import InputError
+    from camring.interfaces.fitting import Fit, fit
     from camring.interfaces.operating_map import operating_map
     from camring.interfaces.optimisation import optimise, resume
     from camring.interfaces.own_function import FunctionMinimum, minimise_function
@@ -43,6 +44,7 @@ _HOMES = {
     "Constraints": "camring.objective.constraints",
     "Cycle": "camring.physics.cycle",
     "DesignSpace": "camring.objective.design_space",
+    "Fit": "camring.interfaces.fitting",
     "FunctionMinimum": "camring.interfaces.own_function",
     "Goal": "camring.objective.objective",
     "InputError": "camring.interfaces.errors",
@@ -55,6 +57,7 @@ _HOMES = {
     "System": "camring.physics.system",
     "Weights": "camring.objective.terms",
     "evaluate": "camring.interfaces.compiled",
+    "fit": "camring.interfaces.fitting",
     "minimise_function": "camring.interfaces.own_function",
     "open_study": "camring.interfaces.study",
     "operating_map": "camring.interfaces.operating_map",
@@ -72,6 +75,7 @@ __all__ = [
     "Constraints",
     "Cycle",
     "DesignSpace",
+    "Fit",
     "FunctionMinimum",
     "Goal",
     "InputError",
@@ -85,6 +89,7 @@ __all__ = [
     "Weights",
     "__version__",
     "evaluate",
+    "fit",
     "minimise_function",
     "open_study",
     "operating_map",

@@ -31,6 +31,7 @@ COMMANDS = (
     "optimise",
     "pareto",
     "sensitivities",
+    "fit",
     "resume",
     "report",
     "export",

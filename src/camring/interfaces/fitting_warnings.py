@@ -1,0 +1,156 @@
+"""What to know before fitted numbers are used, in plain words and with a way out."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from camring.interfaces.fitting import Fit
+from camring.search.confidence import drift
+
+MOST_CHANCE = 3.0  # standard deviations of pure chance
+TOO_MUCH, TOO_LITTLE = 2.0, 0.3  # scatter over what the standard deviations say
+BETTER_MEASURED = {
+    "motor.leakage_coefficient": "measure case drain",
+    "motor.gap.clearance": "measure case drain",
+    "motor.viscous_damping": "measure torque at higher speeds",
+    "motor.roller.friction": "measure torque at other pressures",
+    "motor.side_friction": "measure torque at other pressures",
+    "motor.valve_plate.discharge_coefficient": "measure torque at higher speeds",
+    "fluid.bulk_modulus": "measure ripple",
+}
+OTHERWISE = "measure at other speeds and pressures"
+_MADE_OF = {
+    "hydromechanical_efficiency": {"mean_torque"},
+    "volumetric_efficiency": {"supply_flow"},
+    "efficiency": {"mean_torque", "supply_flow"},
+    "output_power": {"mean_torque"},
+    "input_power": {"supply_flow"},
+}
+
+
+def warnings_of(found: Fit) -> list[str]:
+    """The sentences, the gravest first."""
+    return [
+        *_unsettled(found),
+        *_untold(found),
+        *_tangled(found),
+        *_at_limits(found),
+        *_systematic(found),
+        *_scatter(found),
+        *_twice(found),
+    ]
+
+
+def _unsettled(found: Fit) -> list[str]:
+    if found.squares.settled:
+        return []
+    return ["The fit did not come to rest; its numbers and intervals are not to be trusted."]
+
+
+def _untold(found: Fit) -> list[str]:
+    said = []
+    for place, number in enumerate(found.numbers):
+        if found.told(place) or any(place in group for group in found.tangled):
+            continue
+        said.append(
+            f"{number.key}: these rows do not tell it, its interval is wider than ten times "
+            f"itself; {_leave_out(found, place)}{BETTER_MEASURED.get(number.key, OTHERWISE)}."
+        )
+    return said
+
+
+def _tangled(found: Fit) -> list[str]:
+    said = []
+    for group in found.tangled:
+        keys = [found.numbers[place].key for place in group]
+        pairs = [abs(found.correlation[a, b]) for a in group for b in group if a != b]
+        how = "do not tell them apart at all"
+        if max(pairs) < 1 - 1e-6:
+            how = f"hardly tell them apart (correlation {max(pairs):.2f})"
+        said.append(
+            f"{_listed(keys)}: these rows {how}; keep one as given, for example "
+            f"--of {_others(found, group[-1])}, or {OTHERWISE}."
+        )
+    return said
+
+
+def _at_limits(found: Fit) -> list[str]:
+    said = []
+    for place in np.flatnonzero(~found.squares.free):
+        number, value = found.numbers[place], float(found.values[place])
+        low = abs(found.squares.point[place] - number.bounds[0]) < 1e-9
+        if low and number.entry.low == 0:
+            what = "goes to nothing: these rows want none of it"
+        else:
+            what = f"ends at its limit, {number.written(value)}"
+        said.append(f"{number.key} {what}; {_leave_out(found, int(place))}look at its law.")
+    return said
+
+
+def _systematic(found: Fit) -> list[str]:
+    """Results whose residuals are no chance."""
+    table, said = found.table, []
+    for result in table.values:
+        here = found.of(result)
+        residuals = ((found.modelled - found.measured) / found.deviation)[here]
+        if np.all(np.abs(residuals * found.deviation[here]) < 1e-6 * np.abs(found.measured[here])):
+            continue
+        rows = found.rows[here]
+        for name, words in (("shaft_speed", "speed"), (_pressure(found), "pressure")):
+            others = table.duties[_pressure(found) if name == "shaft_speed" else "shaft_speed"]
+            order = np.lexsort((others[rows], table.duties[name][rows]))
+            if drift(residuals[order]) > MOST_CHANCE:
+                said.append(
+                    f"{result.replace('_', ' ')}: what is left follows {words} and is no chance; "
+                    "a law of the motor is too simple for these rows, and the intervals are too "
+                    "narrow."
+                )
+                break
+    return said
+
+
+def _pressure(found: Fit) -> str:
+    return "supply_pressure" if "supply_pressure" in found.table.duties else "pressure_drop"
+
+
+def _scatter(found: Fit) -> list[str]:
+    known = all(np.all(np.isfinite(found.table.deviations[r][found.rows[found.of(r)]]))
+                for r in found.table.values)  # fmt: skip
+    scatter = found.squares.confidence.scatter
+    if not known or TOO_LITTLE < scatter < TOO_MUCH:
+        return []
+    if scatter >= TOO_MUCH:
+        return [
+            f"The model misses the rows by {scatter:.2g} times their standard deviations; the "
+            "intervals are wider by as much."
+        ]
+    return [
+        f"The model meets the rows to {scatter:.2g} of their standard deviations; these are too "
+        "large, and so are the intervals."
+    ]
+
+
+def _twice(found: Fit) -> list[str]:
+    names = set(found.table.values)
+    for result, parts in _MADE_OF.items():
+        if result in names and parts <= names:
+            shown = [each.replace("_", " ") for each in sorted(parts)]
+            return [
+                f"{result.replace('_', ' ')} is computed from {_listed(shown)}: the same "
+                "measurement counts twice, and the intervals are too narrow; begin the header of "
+                "one column with #."
+            ]
+    return []
+
+
+def _leave_out(found: Fit, place: int) -> str:
+    others = _others(found, place)
+    return f"leave it out with --of {others}, or " if others else ""
+
+
+def _others(found: Fit, place: int) -> str:
+    return ",".join(n.key for at, n in enumerate(found.numbers) if at != place)
+
+
+def _listed(words: Sequence[str]) -> str:
+    return " and ".join((", ".join(words[:-1]), words[-1])) if len(words) > 1 else words[0]
