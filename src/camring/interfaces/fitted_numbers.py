@@ -72,6 +72,18 @@ class FittedNumber:
             return log(max(low / self.scale, SMALLEST)), log(high / self.scale)
         return low / self.scale, high / self.scale
 
+    def ends(self, coordinate: float, half_width: float) -> tuple[float, float]:
+        """The interval, SI. Of a number that may be zero it is even and ends there.
+
+        Results are straight in such a number: leakage, a friction. In its logarithm they
+        are not, and an interval that is wide would leave zero out.
+        """
+        if self.by_logarithm and self.entry.low > 0:
+            return self.value(coordinate - half_width), self.value(coordinate + half_width)
+        middle = self.value(coordinate)
+        reach = half_width * (middle if self.by_logarithm else self.scale)
+        return max(middle - reach, self.entry.low), middle + reach
+
     def value(self, coordinate: float) -> float:
         """SI."""
         with np.errstate(over="ignore"):
@@ -81,9 +93,9 @@ class FittedNumber:
         """In the file's unit."""
         return from_si(value, self.unit) if self.unit else value
 
-    def written(self, value: float) -> str:
+    def written(self, value: float, digits: int = DIGITS) -> str:
         """With its unit, as in the file."""
-        return f"{self.shown(value):.{DIGITS}g} {self.unit}".rstrip()
+        return f"{self.shown(value):.{digits}g} {self.unit}".rstrip()
 
     def rounded(self, value: float) -> float:
         """What its digits in the file mean, SI."""
@@ -122,6 +134,12 @@ def keys_of(text: str) -> list[str]:
     return text.replace(",", " ").split()
 
 
+def short(key: str) -> str:
+    """The last parts of a key that say enough: `roller.friction`, `bulk_modulus`."""
+    last = key.rpartition(".")[2]
+    return last if "_" in last else ".".join(key.split(".")[-2:])
+
+
 def _has(file: MotorFile, key: str) -> bool:
     entry = key_map(file.choices).get(key)
     return isinstance(entry, Number) and _present(file, entry)
@@ -135,11 +153,11 @@ def _present(file: MotorFile, entry: Number) -> bool:
 
 
 def _path(file: MotorFile, key: str) -> str:
-    """The whole path of a key, which may be its last part where only one has it."""
+    """The whole path of a key, which may be its last parts where only one has them."""
     known = key_map(file.choices)
     if key in known:
         return key
-    fits = [path for path in known if path.rpartition(".")[2] == key and _fittable(path, known)]
+    fits = [path for path in known if path.endswith(f".{key}") and _fittable(path, known)]
     if len(fits) == 1:
         return fits[0]
     field = f"--of {quote(key)}"

@@ -6,7 +6,6 @@ fitted number are exact, so that a fit needs about ten passes over the rows.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import log
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +20,8 @@ from camring.search.confidence import told
 from camring.search.least_squares import EXPECTED, SquaresFit, fit_squares
 
 Say = Callable[[str], None]
-WIDEST = 10.0  # upper over lower end of an interval that still tells something
+SURE = 0.3  # standard error, of a number, up to which it is fitted without being named
+WIDEST = 10.0  # of a number, an interval that still tells something
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,13 +94,11 @@ class Fit:
         return tuple(tuple(int(free[p]) for p in g) for g in self.squares.confidence.tangled)
 
     def told(self, place: int) -> bool:
-        """Whether the rows tell a number at all."""
-        number, low, high = self.numbers[place], self.low[place], self.high[place]
+        """Whether the rows tell a number at all: its interval is not wider than ten of it."""
+        value, low, high = self.values[place], self.low[place], self.high[place]
         if not self.squares.free[place]:
             return True
-        if number.by_logarithm:
-            return bool(high <= WIDEST * low)
-        return bool(high - low <= WIDEST * abs(self.values[place]))
+        return bool(high <= WIDEST * low or high - low <= WIDEST * value)
 
 
 def fit(
@@ -174,25 +172,23 @@ def _chosen(model: "Bench", slopes: np.ndarray) -> Bool[np.ndarray, " number"]:
         [np.sqrt(np.mean(model.measured[model.group == g] ** 2)) or 1.0 for g in model.group]
     )
     expected = np.where(np.isnan(model.given_deviation), EXPECTED * size, model.given_deviation)
-    return told(slopes / expected[:, None], log(WIDEST) / 4)
+    return told(slopes / expected[:, None], SURE)
 
 
 def _fit(model: "Bench", kept: tuple, chosen: np.ndarray, squares: SquaresFit) -> Fit:
     width = np.full(len(kept), np.nan)
     width[squares.free] = squares.confidence.half_width
-    ends = squares.point + np.array([[-1.0], [1.0]]) * width
-    values, low, high = (
-        np.array([each.value(x) for each, x in zip(kept, end, strict=True)])
-        for end in (squares.point, *ends)
-    )
+    each = list(zip(kept, squares.point.tolist(), width.tolist(), strict=True))
+    ends = np.array([number.ends(point, half) for number, point, half in each])
+    values = np.array([number.value(point) for number, point, _ in each])
     left = [each for each, take in zip(model.numbers, chosen, strict=True) if not take]
     return Fit(
         file=model.file,
         table=model.table,
         numbers=kept,
         values=values,
-        low=np.where([each.by_logarithm for each in kept], low, np.maximum(low, 0.0)),
-        high=high,
+        low=ends[:, 0],
+        high=ends[:, 1],
         left=tuple(left),
         rows=model.rows,
         results=model.results,

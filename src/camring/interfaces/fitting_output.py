@@ -122,7 +122,7 @@ def _residuals(found: Fit) -> Table:
         title="Modelled minus measured, rms", title_justify="left", box=None, pad_edge=False
     )
     table.add_column("")
-    for name in ("values", "as given", "fitted", "", "fitted, %"):
+    for name in ("values", "as given", "fitted", "", "of size, %"):
         table.add_column(name, justify="left" if name == "" else "right")
     for name in found.table.values:
         each, told = shown(name), residuals_of(found, name)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from camring.interfaces.fitted_numbers import short
 from camring.interfaces.fitting import Fit
 from camring.search.confidence import drift
 
@@ -50,7 +51,14 @@ def _unsettled(found: Fit) -> list[str]:
 def _untold(found: Fit) -> list[str]:
     said = []
     for place, number in enumerate(found.numbers):
-        if found.told(place) or any(place in group for group in found.tangled):
+        if any(place in group for group in found.tangled):
+            continue
+        if found.told(place):
+            if found.squares.free[place] and found.low[place] <= 0:
+                said.append(
+                    f"{number.key}: these rows tell only that it is below "
+                    f"{number.written(found.high[place], 3)}; it may as well be zero."
+                )
             continue
         said.append(
             f"{number.key}: these rows do not tell it, its interval is wider than ten times "
@@ -64,12 +72,13 @@ def _tangled(found: Fit) -> list[str]:
     for group in found.tangled:
         keys = [found.numbers[place].key for place in group]
         pairs = [abs(found.correlation[a, b]) for a in group for b in group if a != b]
-        how = "do not tell them apart at all"
+        how, otherwise = "do not tell them apart at all", ""
         if max(pairs) < 1 - 1e-6:
             how = f"hardly tell them apart (correlation {max(pairs):.2f})"
+            otherwise = f", or {OTHERWISE}"
         said.append(
             f"{_listed(keys)}: these rows {how}; keep one as given, for example "
-            f"--of {_others(found, group[-1])}, or {OTHERWISE}."
+            f"--of {_others(found, _least_sure(found, group))}{otherwise}."
         )
     return said
 
@@ -80,11 +89,18 @@ def _at_limits(found: Fit) -> list[str]:
         number, value = found.numbers[place], float(found.values[place])
         low = abs(found.squares.point[place] - number.bounds[0]) < 1e-9
         if low and number.entry.low == 0:
-            what = "goes to nothing: these rows want none of it"
+            what, instead = "goes to nothing: these rows want none of it", "take it as it is"
         else:
             what = f"ends at its limit, {number.written(value)}"
-        said.append(f"{number.key} {what}; {_leave_out(found, int(place))}look at its law.")
+            instead = "fit with it what else may take its place"
+        said.append(f"{number.key} {what}; {_leave_out(found, int(place))}{instead}.")
     return said
+
+
+def _least_sure(found: Fit, group: Sequence[int]) -> int:
+    """The one of a group whose interval is the widest beside itself."""
+    wide = [(found.high[p] - found.low[p]) / abs(found.values[p] or 1.0) for p in group]
+    return group[int(np.argmax(wide))]
 
 
 def _systematic(found: Fit) -> list[str]:
@@ -137,8 +153,8 @@ def _twice(found: Fit) -> list[str]:
             shown = [each.replace("_", " ") for each in sorted(parts)]
             return [
                 f"{result.replace('_', ' ')} is computed from {_listed(shown)}: the same "
-                "measurement counts twice, and the intervals are too narrow; begin the header of "
-                "one column with #."
+                "measurement counts twice, and the intervals are too narrow; write one name in "
+                "brackets to leave it out."
             ]
     return []
 
@@ -149,7 +165,7 @@ def _leave_out(found: Fit, place: int) -> str:
 
 
 def _others(found: Fit, place: int) -> str:
-    return ",".join(n.key for at, n in enumerate(found.numbers) if at != place)
+    return ",".join(short(n.key) for at, n in enumerate(found.numbers) if at != place)
 
 
 def _listed(words: Sequence[str]) -> str:

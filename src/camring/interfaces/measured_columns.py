@@ -91,7 +91,7 @@ class Column:
 
 
 def column(header: str, where: str) -> Column | None:
-    """The column that a header names; None where it begins with `#` and is not to be read.
+    """The column that a header names; None where it stands in brackets and is not to be read.
 
     Raises
     ------
@@ -99,14 +99,14 @@ def column(header: str, where: str) -> Column | None:
         For a name or a unit that is not known, or a unit that measures something else.
     """
     shown = " ".join(header.split())
-    if shown.startswith("#"):
+    if shown.startswith("("):
         return None
     found = _HEADER.fullmatch(shown)
     if found is None or not found["name"].strip():
         raise InputError(
             where,
             f"is {quote(shown)}, which names nothing",
-            "name it like supply pressure [bar], or begin it with # to leave it out",
+            "name it like supply pressure [bar], or write it in brackets to leave it out",
         )
     name = re.sub(r"[\s_-]+", "_", found["name"].strip().lower())
     deviation = name.endswith(_DEVIATION)
@@ -120,14 +120,14 @@ def column(header: str, where: str) -> Column | None:
             f"is {quote(shown)}, which is nothing that can be read here",
             f"you probably meant {_words(close)}"
             if close
-            else "begin it with # to leave it out; known are "
+            else "write it in brackets to leave it out; known are "
             + ", ".join(map(_words, (*DUTIES, *MEASURABLE))),
         )
     if deviation and name in DUTIES:
         raise InputError(
             where,
             f"is {quote(shown)}, but only results have one",
-            "begin it with # to leave it out",
+            "write it in brackets to leave it out",
         )
     factor, offset = _scale(name, found["unit"], where, shown)
     return Column(name, shown, deviation, factor, 0.0 if deviation else offset)

@@ -77,7 +77,7 @@ def _fluid(file: MotorFile, table: MeasuredTable, row: int) -> AbstractFluid:
         raise InputError(
             f"{table.path}, oil temperature,",
             f"has no effect while {file.path.name} names no oil",
-            'name it, oil = "ISO VG 46" in [fluid], or begin the header of that column with #',
+            'name it, oil = "ISO VG 46" in [fluid], or write the name of that column in brackets',
         )
     kelvin = table.duties[TEMPERATURE][row]
     if np.isnan(kelvin):

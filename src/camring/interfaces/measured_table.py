@@ -164,7 +164,7 @@ def _columns(cells: Sequence[str], where: str) -> list[Column | None]:
             raise InputError(
                 where,
                 f"has two columns of the same, {quote(twin.header)} and {quote(each.header)}",
-                "begin one of them with # to leave it out",
+                "write one of them in brackets to leave it out",
             )
     names = {name for name, deviation in seen if not deviation}
     if "shaft_speed" not in names:
@@ -174,7 +174,9 @@ def _columns(cells: Sequence[str], where: str) -> list[Column | None]:
         raise InputError(
             where,
             "has no column supply pressure [bar]" if lacks else "has both supply pressure and drop",
-            "add it, or pressure drop [bar]" if lacks else "begin one of them with #",
+            "add it, or pressure drop [bar]"
+            if lacks
+            else "write one of them in brackets to leave it out",
         )
     if not names & set(MEASURABLE):
         raise InputError(
@@ -256,5 +258,5 @@ def _require_whole(table: MeasuredTable) -> None:
             raise InputError(
                 table.where(int(missing[0]), name),
                 "has no standard deviation but others of its column have one",
-                "give each its own, or begin the header of that column with #",
+                "give each its own, or write the name of that column in brackets",
             )

@@ -162,4 +162,4 @@ def drift(residuals: Float[np.ndarray, " value"]) -> float:
     if count < 3 or not np.any(residuals):
         return 0.0
     ratio = float(np.mean(np.diff(residuals) ** 2) / np.mean(residuals**2))
-    return (2 - ratio) / 2 * float(np.sqrt(count))
+    return (2 - ratio) / (2 * float(np.sqrt((count - 2) / (count**2 - 1))))

@@ -1,13 +1,15 @@
 """Numbers of a model fitted to measured values by weighted least squares on a box.
 
 The model gives its values with their slopes. Where the standard deviations of what was
-measured are not known, each group of values gets that of its own residuals, and the fit
-is done again with these weights until they settle: torques of kilonewtonmetres and
-efficiencies below one then count by how well the model meets them.
+measured are not known, each group of values gets that of its own residuals, the same for
+all its values or a share of each, whichever makes the residuals likelier; the fit is done
+again with these weights until they settle. So torques of kilonewtonmetres and efficiencies
+below one count by how well the model meets them.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -27,6 +29,10 @@ UNEVEN = 20.0
 met exactly would take over."""
 LEAST = 1e-7
 """Standard deviation of a group at least, of its size."""
+NEAR_ZERO = 0.01
+"""Of a group's size: with values below it, no deviation is a share of them."""
+UNDECIDED = 4
+"""Rounds in which a group may change from the one kind of deviation to the other."""
 SETTLED = 0.01
 ROUNDS = 12
 AT_BOUND = 1e-3
@@ -44,6 +50,8 @@ class SquaresFit:
         The model there.
     deviation
         Standard deviation of each measured value: given or estimated.
+    shares
+        Groups whose deviations were found to be a share of each value.
     free
         Numbers that end inside the box; the others stand at a bound and have no interval.
     confidence
@@ -57,6 +65,7 @@ class SquaresFit:
     point: Point
     values: Values
     deviation: Values
+    shares: frozenset[int]
     free: Bool[np.ndarray, " number"]
     confidence: Confidence
     settled: bool
@@ -110,8 +119,8 @@ def fit_squares(
     size = _sizes(measured, group)
     used = np.where(unknown, EXPECTED * size, given)
     point, free = np.array(start, dtype=float), np.ones(len(start), dtype=bool)
-    settled = False
-    for _ in range(ROUNDS):
+    settled, shares = False, frozenset[int]()
+    for round_ in range(ROUNDS):
         point, rests = _solved(asked, measured, used, point, free, lower, upper)
         stuck = free & ((point - lower < AT_BOUND) | (upper - point < AT_BOUND))
         if np.any(stuck):
@@ -123,7 +132,10 @@ def fit_squares(
             settled = rests
             break
         values, slopes = asked(point)
-        renewed = _estimated(values - measured, slopes[:, free], used, group, unknown, size)
+        rows = _Rows(measured, values - measured, slopes[:, free], group, unknown, size)
+        if round_ < UNDECIDED:
+            shares = rows.shares(used)
+        renewed = rows.deviation(used, shares)
         change = np.max(np.abs(np.log(renewed / used)), initial=0.0)
         used = renewed
         if change < SETTLED:
@@ -135,7 +147,7 @@ def fit_squares(
         slopes[:, free] / used[:, None],
         known=not np.any(unknown),
     )
-    return SquaresFit(point, values, used, free, told, settled, asked.count)
+    return SquaresFit(point, values, used, shares, free, told, settled, asked.count)
 
 
 def _sizes(measured: Values, group: Int[np.ndarray, " value"]) -> Values:
@@ -178,27 +190,53 @@ def _solved(
     return whole(found.x), found.status > 0
 
 
-def _estimated(
-    residuals: Values,
-    slopes: Float[np.ndarray, "value number"],
-    used: Values,
-    group: Int[np.ndarray, " value"],
-    unknown: Bool[np.ndarray, " value"],
-    size: Values,
-) -> Values:
-    """Each group's standard deviation from its residuals and the freedom they keep."""
-    left, values, _ = np.linalg.svd(slopes / used[:, None], full_matrices=False)
-    kept = values > 1e-9 * np.max(values, initial=0.0)
-    leverage = np.sum(left[:, kept] ** 2, axis=1)
-    freedom = max(len(residuals) - int(np.sum(kept)), 1)
-    together = float(np.sqrt(np.sum((residuals / size) ** 2) / freedom))
-    found = used.copy()
-    for name in np.unique(group[unknown]):
-        here = unknown & (group == name)
-        own = float(np.sum(1 - leverage[here]))
-        least = max(together / UNEVEN, LEAST)
-        share = together
-        if own >= 1:
-            share = float(np.sqrt(np.sum((residuals[here] / size[here]) ** 2) / own))
-        found[here] = max(share, least) * size[here]
-    return found
+class _Rows(NamedTuple):
+    """Measured values with what is left of them at a fit."""
+
+    measured: Values
+    residuals: Values
+    slopes: Float[np.ndarray, "value number"]
+    group: Int[np.ndarray, " value"]
+    unknown: Bool[np.ndarray, " value"]
+    size: Values
+
+    def freedom(self, used: Values) -> Values:
+        """What each residual keeps beside the numbers fitted; in all, values less numbers."""
+        left, values, _ = np.linalg.svd(self.slopes / used[:, None], full_matrices=False)
+        kept = values > 1e-9 * np.max(values, initial=0.0)
+        return 1 - np.sum(left[:, kept] ** 2, axis=1)
+
+    def shares(self, used: Values) -> frozenset[int]:
+        """Groups whose residuals are likelier to be a share of each value than alike."""
+        return frozenset(
+            int(name)
+            for name in np.unique(self.group[self.unknown])
+            if self._is_share(self.unknown & (self.group == name), self.freedom(used))
+        )
+
+    def _is_share(self, here: Bool[np.ndarray, " value"], freedom: Values) -> bool:
+        sizes = np.abs(self.measured[here])
+        if np.min(sizes) < NEAR_ZERO * self.size[here][0] or np.sum(freedom[here]) < 1:
+            return False
+        left = self.residuals[here]
+        if not np.any(left):
+            return False
+        # Logarithms of the mean squares, and of what the shares are taken of.
+        alike = np.log(np.mean(left**2))
+        share = np.log(np.mean((left / sizes) ** 2)) + 2 * np.mean(np.log(sizes))
+        return bool(share < alike)
+
+    def deviation(self, used: Values, shares: frozenset[int]) -> Values:
+        """Each group's standard deviation from its residuals and the freedom they keep."""
+        freedom = self.freedom(used)
+        together = np.sqrt(np.sum((self.residuals / self.size) ** 2) / max(np.sum(freedom), 1.0))
+        found = used.copy()
+        for name in np.unique(self.group[self.unknown]):
+            here = self.unknown & (self.group == name)
+            of = np.abs(self.measured[here]) if name in shares else self.size[here]
+            own = float(np.sum(freedom[here]))
+            part = float(together)
+            if own >= 1:
+                part = float(np.sqrt(np.sum((self.residuals[here] / of) ** 2) / own))
+            found[here] = max(part, together / UNEVEN, LEAST) * of
+        return found

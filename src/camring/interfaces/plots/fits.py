@@ -19,6 +19,7 @@ MOST_RESULTS = 4  # beside each other
 WIDTH, HEIGHT = 3.1, 5.2  # inches, of one result
 COLOURS = "viridis"
 BAR = 1e5
+ASIDE = 0.1  # of the range of pressures, from the lowest speed to the highest
 GIVEN = "#b4540a"
 
 
@@ -81,6 +82,12 @@ def _over_measured(
     return dots
 
 
+def _aside(speed: np.ndarray) -> np.ndarray:
+    """A little to the side by speed, so that rows of one pressure do not hide each other."""
+    _, rank = np.unique(speed, return_inverse=True)
+    return ASIDE * (rank / max(rank.max(), 1) - 0.5)
+
+
 def _left_over(
     axes: Axes,
     found: "Fit",
@@ -92,6 +99,7 @@ def _left_over(
     duties = found.table.duties
     of_supply = "supply_pressure" in duties
     pressure = duties["supply_pressure" if of_supply else "pressure_drop"][found.rows[here]] / BAR
+    pressure = pressure + _aside(colour) * (np.ptp(pressure) or pressure[0])
     left = result.factor * (found.modelled - found.measured)[here]
     reach = result.factor * 2 * found.deviation[here]
     axes.axhline(0, color=QUIET, linewidth=0.8, zorder=1)
