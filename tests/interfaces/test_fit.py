@@ -6,7 +6,7 @@ import json
 import equinox as eqx
 import numpy as np
 import pytest
-from motor_files import SOUND, added
+from motor_files import SOUND, added, with_line
 from typer.testing import CliRunner
 
 from camring.interfaces.bench import Bench
@@ -121,16 +121,33 @@ def test_what_is_left_over_in_an_order_is_told(exact):
     assert not any("is no chance" in sentence for sentence in exact.warnings)
 
 
-def test_the_same_measurement_twice_is_told(file, exact):
+def test_a_column_in_the_wrong_unit_is_told(exact):
+    wrong = dataclasses.replace(
+        exact, measured=np.where(exact.of("supply_flow"), 60, 1) * exact.measured
+    )
+    far = [each for each in wrong.warnings if "still misses" in each]
+    assert len(far) == 1
+    assert far[0].startswith("supply flow: the fitted motor still misses it by 98 %; look at the")
+
+
+def test_the_same_measurement_twice_is_told(exact):
+    ones, table = np.ones(9), exact.table
     twice = dataclasses.replace(
-        exact.table,
-        values={**exact.table.values, "efficiency": np.full(9, np.nan)},
-        deviations={**exact.table.deviations, "efficiency": np.full(9, np.nan)},
+        exact,
+        table=dataclasses.replace(
+            table,
+            values={**table.values, "efficiency": ones},
+            deviations={**table.deviations, "efficiency": ones},
+        ),
+        rows=np.append(exact.rows, np.arange(9)),
+        results=exact.results + 9 * ("efficiency",),
+        measured=np.append(exact.measured, ones),
+        modelled=np.append(exact.modelled, ones),
+        deviation=np.append(exact.deviation, ones),
     )
-    said = dataclasses.replace(exact, table=twice).warnings
-    assert any(
-        each.startswith("efficiency is computed from mean torque and supply") for each in said
-    )
+    said = [each for each in twice.warnings if "counts twice" in each]
+    assert len(said) == 1
+    assert said[0].startswith("efficiency is computed from mean torque and supply flow")
 
 
 def test_the_written_file_is_the_motor_with_these_numbers_and_says_where_from(exact):
@@ -207,6 +224,8 @@ def test_the_command_shows_writes_and_draws(folder):
 def test_numbers_that_no_file_gives_are_told(file):
     for keys, said in (
         (["motor.leakage_coeficient"], "you probably meant motor.leakage_coefficient"),
+        (["leakage"], "you probably meant motor.leakage_coefficient"),
+        (["bulk_modulos"], "you probably meant fluid.bulk_modulus"),
         (["motor.pistons"], "is not a number of motor or oil that can be fitted"),
         (["operating_points.speed"], "is not a number of motor or oil"),
         (["motor.gap.clearance"], "give motor.gap.clearance a value in motor.toml"),
@@ -217,6 +236,24 @@ def test_numbers_that_no_file_gives_are_told(file):
             numbers_named(file, keys)
         assert said in str(told.value), told.value
     assert numbers_named(file, ["friction"])[0].key == "motor.roller.friction"
+
+
+def test_numbers_below_zero_and_at_zero_begin_where_the_file_has_them():
+    file = parse_motor_file(with_line('shift = "-0.4 deg"'))
+    turned, side = numbers_named(file, ["motor.valve_plate.shift", "side_friction"])
+    assert turned.value(turned.as_given) == pytest.approx(np.radians(-0.4))
+    assert turned.start == turned.as_given
+    assert turned.written(turned.value(turned.start)) == "-0.4 deg"
+    assert side.value(side.as_given) == 0
+    assert side.bounds[0] < side.start < side.bounds[1]
+
+
+def test_an_interval_may_reach_zero_only_where_the_number_may(file):
+    leak, modulus = numbers_named(file, ["leakage_coefficient", "bulk_modulus"])
+    assert leak.ends(0.0, 2.0) == pytest.approx((0.0, 3 * leak.given))
+    assert leak.ends(0.0, 0.1) == pytest.approx((0.9 * leak.given, 1.1 * leak.given))
+    low, high = modulus.ends(0.0, 2.0)
+    assert (low, high) == pytest.approx((modulus.given / np.exp(2), modulus.given * np.exp(2)))
 
 
 def test_usual_numbers_are_those_of_the_motors_laws(file):
@@ -230,5 +267,5 @@ def test_usual_numbers_are_those_of_the_motors_laws(file):
 
 def test_fewer_values_than_numbers_are_refused(file):
     few = parse_measured_table(f"{HEAD}\n100,200,1000,\n100,300,1500,\n")
-    with pytest.raises(InputError, match="2 measured values for 4 numbers; add rows, or name few"):
+    with pytest.raises(InputError, match="too few measured values, 2, for 4 to fit; add rows"):
         fit(file, few, list(TRUTH))

@@ -31,6 +31,11 @@ def test_a_table_is_read_to_si():
     assert np.all(np.isnan(found.deviations["efficiency"]))
 
 
+def test_a_column_without_a_value_is_no_result():
+    text = PLAIN.replace("91.5", "").replace("92", "n/a")
+    assert list(parse_measured_table(text).values) == ["mean_torque"]
+
+
 @pytest.mark.parametrize("separator", [";", "\t"])
 def test_decimal_commas_and_other_separators_say_the_same(separator):
     text = PLAIN.replace(",", separator).replace("91.5", "91,5")

@@ -69,14 +69,14 @@ class Bench:
 
     def at(self, some: Point, chosen: Bool[np.ndarray, " number"]) -> Seen:
         """Values and slopes with some numbers moved, the others as given."""
-        point = np.zeros(len(self.numbers))
+        point = np.array([each.as_given for each in self.numbers])
         point[chosen] = some
         values, slopes = self(point)
         return values, slopes[:, chosen]
 
     def as_given(self) -> Float[np.ndarray, " value"]:
         """Values of the motor file as it stands."""
-        return self(np.zeros(len(self.numbers)))[0]
+        return self(np.array([each.as_given for each in self.numbers]))[0]
 
     def __call__(self, point: Point) -> Seen:
         """Values, NaN where a row cannot be simulated, and slopes by the coordinates."""

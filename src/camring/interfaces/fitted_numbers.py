@@ -60,9 +60,14 @@ class FittedNumber:
         return self.given > 0
 
     @property
+    def as_given(self) -> float:
+        """The coordinate of the given number."""
+        return 0.0 if self.by_logarithm else self.given / self.scale
+
+    @property
     def start(self) -> float:
-        """Where the fit begins, in its coordinate; a number given as zero half its usual size."""
-        return 0.0 if self.by_logarithm else 0.5
+        """Where the fit begins; a number given as zero at half its usual size."""
+        return self.as_given if self.given else 0.5
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -170,9 +175,10 @@ def _path(file: MotorFile, key: str) -> str:
             f'has no effect with {foreign.chooser} = "{foreign.now}"',
             f'set {foreign.chooser} = "{foreign.needed}" in the motor file to fit it',
         )
-    close = nearest(key, [path for path in known if _fittable(path, known)])
-    short = nearest(key, [path.rpartition(".")[2] for path in USUAL])
-    meant = close or next((path for path in USUAL if path.endswith(f".{short}")), None)
+    open_to = [*USUAL, *(path for path in known if _fittable(path, known))]
+    ends = {path.rpartition(".")[2]: path for path in reversed(open_to)}
+    meant = next((path for path in open_to if key in path), None)
+    meant = meant or ends.get(nearest(key, list(ends)) or "") or nearest(key, open_to)
     raise InputError(
         field,
         "is no key of a motor file",

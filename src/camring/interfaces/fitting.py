@@ -95,7 +95,7 @@ class Fit:
 
     def told(self, place: int) -> bool:
         """Whether the rows tell a number at all: its interval is not wider than ten of it."""
-        value, low, high = self.values[place], self.low[place], self.high[place]
+        value, low, high = abs(self.values[place]), self.low[place], self.high[place]
         if not self.squares.free[place]:
             return True
         return bool(high <= WIDEST * low or high - low <= WIDEST * value)
@@ -147,7 +147,7 @@ def fit(
     if len(model.measured) <= len(kept):
         raise InputError(
             model.name,
-            f"holds {len(model.measured)} measured values for {len(kept)} numbers",
+            f"holds too few measured values, {len(model.measured)}, for {len(kept)} to fit",
             "add rows, or name fewer numbers with --of",
         )
     say(

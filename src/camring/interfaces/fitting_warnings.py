@@ -9,6 +9,7 @@ from camring.interfaces.fitting import Fit
 from camring.search.confidence import drift
 
 MOST_CHANCE = 3.0  # standard deviations of pure chance
+FAR = 0.2  # of a result's size: no constant of a law explains so much
 TOO_MUCH, TOO_LITTLE = 2.0, 0.3  # scatter over what the standard deviations say
 BETTER_MEASURED = {
     "motor.leakage_coefficient": "measure case drain",
@@ -33,6 +34,7 @@ def warnings_of(found: Fit) -> list[str]:
     """The sentences, the gravest first."""
     return [
         *_unsettled(found),
+        *_far(found),
         *_untold(found),
         *_tangled(found),
         *_at_limits(found),
@@ -48,13 +50,28 @@ def _unsettled(found: Fit) -> list[str]:
     return ["The fit did not come to rest; its numbers and intervals are not to be trusted."]
 
 
+def _far(found: Fit) -> list[str]:
+    said = []
+    for result in found.table.values:
+        here = found.of(result)
+        size = np.sqrt(np.mean(found.measured[here] ** 2))
+        missed = np.sqrt(np.mean((found.modelled - found.measured)[here] ** 2))
+        if missed > FAR * size:
+            said.append(
+                f"{result.replace('_', ' ')}: the fitted motor still misses it by "
+                f"{100 * missed / size:.0f} %; look at the column's unit, at absolute and gauge "
+                "pressures, and at the displacement of the motor file."
+            )
+    return said
+
+
 def _untold(found: Fit) -> list[str]:
     said = []
     for place, number in enumerate(found.numbers):
         if any(place in group for group in found.tangled):
             continue
         if found.told(place):
-            if found.squares.free[place] and found.low[place] <= 0:
+            if found.squares.free[place] and found.low[place] == 0 == number.entry.low:
                 said.append(
                     f"{number.key}: these rows tell only that it is below "
                     f"{number.written(found.high[place], 3)}; it may as well be zero."
@@ -165,7 +182,9 @@ def _leave_out(found: Fit, place: int) -> str:
 
 
 def _others(found: Fit, place: int) -> str:
-    return ",".join(short(n.key) for at, n in enumerate(found.numbers) if at != place)
+    """What to name with --of instead: all but this one and those that end at a limit."""
+    kept = [at for at in np.flatnonzero(found.squares.free) if at != place]
+    return ",".join(short(found.numbers[at].key) for at in kept)
 
 
 def _listed(words: Sequence[str]) -> str:

@@ -94,10 +94,11 @@ def parse_measured_table(text: str, path: Path = Path("measured.csv")) -> Measur
     read = np.array([_row(row, columns, f"{shown} line {n}", comma) for n, row in rows])
     used = [each for each in columns if each is not None]
     names = {(each.name, each.deviation): read[:, k] for k, each in enumerate(used)}
-    values = {name: names[name, False] for name in MEASURABLE if (name, False) in names}
-    kept = np.any(np.isfinite(list(values.values())), axis=0)
-    if not np.any(kept):
+    results = {name: names[name, False] for name in MEASURABLE if (name, False) in names}
+    values = {name: each for name, each in results.items() if np.any(np.isfinite(each))}
+    if not values:
         raise InputError(shown, "holds no measured number", _HOW)
+    kept = np.any(np.isfinite(list(values.values())), axis=0)
     table = MeasuredTable(
         path=path,
         lines=tuple(n for (n, _), keep in zip(rows, kept, strict=True) if keep),
