@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from camring.interfaces.config import MotorFile, read_motor_file
     from camring.interfaces.errors import InputError
     from camring.interfaces.executors import Workers
+    from camring.interfaces.fitting import Fit, fit
     from camring.interfaces.operating_map import operating_map
     from camring.interfaces.optimisation import optimise, resume
     from camring.interfaces.own_function import FunctionMinimum, minimise_function
@@ -44,6 +45,7 @@ _HOMES = {
     "Constraints": "camring.objective.constraints",
     "Cycle": "camring.physics.cycle",
     "DesignSpace": "camring.objective.design_space",
+    "Fit": "camring.interfaces.fitting",
     "FunctionMinimum": "camring.interfaces.own_function",
     "Goal": "camring.objective.objective",
     "InputError": "camring.interfaces.errors",
@@ -57,6 +59,7 @@ _HOMES = {
     "Weights": "camring.objective.terms",
     "Workers": "camring.interfaces.executors",
     "evaluate": "camring.interfaces.compiled",
+    "fit": "camring.interfaces.fitting",
     "minimise_function": "camring.interfaces.own_function",
     "open_study": "camring.interfaces.study",
     "operating_map": "camring.interfaces.operating_map",
@@ -74,6 +77,7 @@ __all__ = [
     "Constraints",
     "Cycle",
     "DesignSpace",
+    "Fit",
     "FunctionMinimum",
     "Goal",
     "InputError",
@@ -88,6 +92,7 @@ __all__ = [
     "Workers",
     "__version__",
     "evaluate",
+    "fit",
     "minimise_function",
     "open_study",
     "operating_map",

@@ -5,7 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from camring.interfaces.measured_table import parse_measured_table, read_measured_table
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 README = (EXAMPLES.parent / "README.md").read_text()
@@ -54,6 +57,16 @@ def test_change_weights_afterwards():
     quiet, frugal = numbers(said, r"efficiency ([\d.]+) %")
     assert frugal >= quiet
     assert "alidated" in said
+
+
+def test_measure_a_made_up_motor():
+    """What it prints is the table that ships beside it."""
+    made = parse_measured_table(run("measure_a_made_up_motor"))
+    shipped = read_measured_table(EXAMPLES / "wheel_motor_measured.csv")
+    for name, values in shipped.values.items():
+        # To the digits printed, of which the last may turn on another machine.
+        np.testing.assert_allclose(made.values[name], values, rtol=2e-3)
+    np.testing.assert_array_equal(made.duties["shaft_speed"], shipped.duties["shaft_speed"])
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)

@@ -33,6 +33,7 @@ COMMANDS = (
     "sensitivities",
     "tolerance",
     "robust",
+    "fit",
     "resume",
     "report",
     "export",

@@ -127,7 +127,8 @@ LIMITS = {
 
 
 @cache
-def _si_units() -> dict[str, str]:
+def si_units() -> dict[str, str]:
+    """SI units of the results by name, as their annotations have them."""
     hints: dict[str, Any] = get_type_hints(Metrics, include_extras=True)
     return {name: str(get_args(hint)[1]) for name, hint in hints.items()}
 
@@ -139,7 +140,7 @@ def quantity(name: str) -> Quantity:
     if known is not None:
         return known
     words = name.replace("_", " ")
-    unit = _si_units()[name]
+    unit = si_units()[name]
     if unit == "Pa":
         return Quantity(name, f"{words[:1].upper()}{words[1:]}", "bar", 1e-5)
     if unit == "m":
@@ -149,7 +150,7 @@ def quantity(name: str) -> Quantity:
 
 def result_names() -> tuple[str, ...]:
     """Every result there is, by its name of model.md section 10."""
-    return tuple(_si_units())
+    return tuple(si_units())
 
 
 def plain_unit(unit: str) -> str:

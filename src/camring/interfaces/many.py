@@ -97,7 +97,7 @@ def evaluate_many(
     judge_chunk = _in_lanes if fits(system.motor) else _one_by_one
     judged = _judged_by(judge_chunk, space, system, goal, look, chunk)
     starts = range(0, len(points), chunk)
-    with ThreadPoolExecutor(threads or _cores()) as pool:
+    with ThreadPoolExecutor(threads or cores()) as pool:
         parts = list(pool.map(lambda start: judged(points[start : start + chunk]), starts))
     return jax.tree.map(lambda *leaves: np.concatenate(leaves, axis=-1), *parts)
 
@@ -166,7 +166,8 @@ def _one_by_one(
     return jax.tree.map(lambda leaf: jax.numpy.moveaxis(leaf, 0, -1), flat)
 
 
-def _cores() -> int:
+def cores() -> int:
+    """Processor cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

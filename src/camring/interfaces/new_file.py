@@ -9,6 +9,24 @@ from camring.interfaces.config.document import printable
 from camring.interfaces.errors import InputError
 
 
+def require_new(path: Path, *, replace: bool = False) -> None:
+    """Refuse what `write_new_file` would, before long work begins.
+
+    Raises
+    ------
+    InputError
+        When something is there, or the folder is not.
+    """
+    shown = printable(path)
+    if path.is_dir():
+        raise InputError(shown, "is a directory", "name a file in it")
+    if path.exists() and not replace:
+        raise InputError(shown, "exists", "choose another name, or replace it with --force")
+    if not path.parent.is_dir():
+        folder = printable(path.parent)
+        raise InputError(shown, f"lies in {folder}, which does not exist", f"make {folder} first")
+
+
 def write_new_file(path: Path, text: str, *, replace: bool = False) -> None:
     """Write a text; an existing file is only touched with `replace`, and then at one stroke.
 

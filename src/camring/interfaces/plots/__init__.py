@@ -15,6 +15,7 @@ from camring.interfaces.errors import CamringError
 
 if TYPE_CHECKING:
     from camring.interfaces.plots.curves import pressure_volume, spectrum, torque, waveforms
+    from camring.interfaces.plots.fits import fitted
     from camring.interfaces.plots.fronts import front
     from camring.interfaces.plots.grids import (
         efficiency_map,
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "cam": "ring",
     "efficiency_map": "grids",
+    "fitted": "fits",
     "front": "fronts",
     "pressure_volume": "curves",
     "result_map": "grids",
@@ -45,6 +47,7 @@ _HOMES = {
 __all__ = [
     "cam",
     "efficiency_map",
+    "fitted",
     "front",
     "pressure_volume",
     "require_matplotlib",
