@@ -64,7 +64,7 @@ def axes_of(file: MotorFile, ranges: Ranges) -> Axes:
     Raises
     ------
     InputError
-        For what is no range, a speed that is not above zero, a pressure not above the
+        For what is no range, a speed that is not above zero, a pressure below the
         return pressure, or too many points.
     """
     points = file.system.operating_points
@@ -89,13 +89,6 @@ def _speeds(file: MotorFile, text: str | None, count: int) -> np.ndarray:
         highest = max(float(each.shaft_speed) for each in file.system.operating_points)
         return np.geomspace(SLOWEST * highest, FASTEST * highest, count)
     values = _values(file, "operating_points.speed", "--speed", text, count)
-    if values[0] <= 0:
-        raise InputError(
-            "--speed",
-            f"begins at {values[0] / RPM:.4g} rpm but must begin above zero",
-            "begin it at the slowest speed of interest: the other direction comes by itself, and "
-            "through zero the table is a straight line",
-        )
     return values if "," in text else np.geomspace(values[0], values[-1], count)
 
 

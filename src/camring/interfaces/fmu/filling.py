@@ -247,20 +247,24 @@ def _motoring_only(
 
 
 def _beyond_the_model(places: np.ndarray, found: Found, vapour: float) -> list[str]:
-    """Where the numbers of the table leave what the model describes."""
+    """Where the numbers of the table leave what the model describes, driving and braking."""
+    speed, drop, _ = places.T
+    drives = speed * drop > 0
     said = []
-    reasons = (
-        (found.least_force < 0, "the roller lifts off the ring"),
-        (found.lowest_pressure < vapour, "the oil would cavitate"),
-    )
-    for where, what in reasons:
-        if where.any():
-            speed, drop, _ = np.abs(places[where]).T
-            said.append(
-                f"At {np.count_nonzero(where)} of {len(places)} points {what} for a part of the "
-                f"cycle, which the table does not know: speeds from {speed.min() / RPM:.3g} to "
-                f"{speed.max() / RPM:.3g} rpm, pressure drops up to {drop.max() / BAR:.3g} bar."
-            )
+    for where, name in ((drives, "Driving"), (speed * drop < 0, "Braking")):
+        for unsound, what in (
+            (found.least_force < 0, "the roller lifts off the ring"),
+            (found.lowest_pressure < vapour, "the oil would cavitate"),
+        ):
+            hit = where & unsound
+            if hit.any():
+                slow, fast = np.abs(speed[hit]).min() / RPM, np.abs(speed[hit]).max() / RPM
+                said.append(
+                    f"{name}, {what} for a part of the cycle at {np.count_nonzero(hit)} of "
+                    f"{np.count_nonzero(where)} points, which the table takes no notice of: "
+                    f"{slow:.3g} to {fast:.3g} rpm, pressure drops up to "
+                    f"{np.abs(drop[hit]).max() / BAR:.3g} bar."
+                )
     return said
 
 

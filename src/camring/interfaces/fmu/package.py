@@ -15,6 +15,7 @@ from camring.interfaces.fmu.compiler import Binary, compiled, source_texts
 from camring.interfaces.fmu.description import model_description, starts
 from camring.interfaces.fmu.filling import Filled
 from camring.interfaces.fmu.identity import identifier
+from camring.interfaces.fmu.table import QUANTITIES
 
 __all__ = ["Fmu", "fmu_of", "statements"]
 
@@ -49,7 +50,8 @@ def fmu_of(file: MotorFile, filled: Filled) -> Fmu:
     said = statements(file, filled)
     moment = f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ}"
     periods = filled.table.periods
-    description = model_description(name, guid, " ".join(said[:2]), moment, point, periods)
+    shown = " ".join(said[: 2 + len(QUANTITIES)])
+    description = model_description(name, guid, shown, moment, point, periods)
     numbers = ", ".join(f"{value!r}" for value in starts(point))
     model = (
         "/* What is this motor's own. */\n"
@@ -85,7 +87,8 @@ def statements(file: MotorFile, filled: Filled) -> list[str]:
         f"looked up at every instant; no lines, no inertia. From {motor.file}, sha256 "
         f"{motor.digest}, by {motor.program}.",
         f"Table error half-way between the table's points and angles, worst of {errors.places} "
-        "places, in shares of the largest absolute value: " + "; ".join(errors.sentences()) + ".",
+        "places, in shares of the largest absolute value:",
+        *(f"- {each}" for each in errors.sentences()),
         f"Speeds from {speed[0] / RPM:.4g} to {speed[-1] / RPM:.4g} rpm, pressure drops from "
         f"{drop[0] / BAR:.4g} to {drop[-1] / BAR:.4g} bar, the lower port from {low[0] / BAR:.4g} "
         f"to {low[-1] / BAR:.4g} bar above the case: {table.points} points of "
