@@ -9,7 +9,6 @@ from types import SimpleNamespace
 from xml.etree import ElementTree
 from zipfile import ZipFile
 
-import equinox as eqx
 import motor_files
 import numpy as np
 import pytest
@@ -18,7 +17,6 @@ from test_cli import EXAMPLE
 from typer.testing import CliRunner
 
 from camring.interfaces.cli import app
-from camring.interfaces.compiled import simulate_compiled, summarise_compiled
 from camring.interfaces.config import parse_motor_file
 from camring.interfaces.errors import InputError
 from camring.interfaces.export import Wishes, export
@@ -27,7 +25,8 @@ from camring.interfaces.fmu.axes import BAR, RPM, Ranges, axes_of
 from camring.interfaces.fmu.filling import Found, angles_of, filled_table, simulated_places
 from camring.interfaces.fmu.identity import identifier
 from camring.interfaces.fmu.table import QUANTITIES
-from camring.physics.port_waves import port_waves
+from camring.metrics.independent import independent_solution
+from camring.metrics.independent.results import total_torque
 
 pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler")
 
@@ -53,6 +52,13 @@ def exported(tmp_path_factory):
     fmu = written[0].path
     library = Library(fmu, tmp_path_factory.mktemp("unpacked"))
     return SimpleNamespace(file=file, folder=folder, written=written, fmu=fmu, library=library)
+
+
+@pytest.fixture(scope="module")
+def solved():
+    """The first operating point by the independent solver."""
+    system = parse_motor_file(motor_files.SOUND).system
+    return independent_solution(system.motor, system.fluid, system.operating_points[0])
 
 
 @pytest.fixture
@@ -87,37 +93,47 @@ def test_fmpy_finds_nothing_to_complain_of(exported):
     assert validation.validate_fmu(str(exported.fmu)) == []
 
 
-def test_fmpy_simulates_it_from_the_motor_file_s_own_duty(exported):
+def test_fmpy_simulates_it_from_the_motor_file_s_own_duty(exported, solved):
     fmpy = pytest.importorskip("fmpy", reason="the extra camring[fmu]")
     point = exported.file.system.operating_points[0]
     turn = tau / float(point.shaft_speed)
     result = fmpy.simulate_fmu(
         str(exported.fmu), stop_time=turn, step_size=turn / 4800, output_interval=turn / 4800
     )
-    cycle = simulate_compiled(exported.file.system.motor, exported.file.system.fluid, point)
     assert result["angle"][-1] == pytest.approx(tau)
-    mean = float(summarise_compiled(cycle).mean_torque)
-    assert np.mean(result["torque"][:-1]) == pytest.approx(mean, rel=1e-5)
+    mean = np.mean(result["torque"][:-1])
+    assert mean == pytest.approx(solved.results["mean_torque"], rel=1e-5)
 
 
 def test_at_a_point_of_the_table_it_is_the_motor_s_own_cycle(exported, slave):
-    """Waves at every angle; means are those of `simulate` and of maps."""
-    system = exported.file.system
-    point = system.operating_points[0]
-    cycle = simulate_compiled(system.motor, system.fluid, point)
-    angles = np.linspace(0, 3, 97) // (tau / 24 / 512) * (tau / 24 / 512)  # the table's own
-    slave.start(**duty(exported.file))
-    waves = np.array(eqx.filter_jit(port_waves)(cycle, angles))
+    system, here = exported.file.system, duty(exported.file)
+    count = angles_of(system.motor)
+    drop = here["supplyPressure"] - here["returnPressure"]
+    place = np.array([[here["speed"], drop, here["returnPressure"] - here["casePressure"]]])
+    cycle = simulated_places(system.motor, system.fluid, here["casePressure"], place, count)
+    slave.start(**here)
+    waves = turned(slave, tau / 24 * np.arange(count) / count)
     peak = np.abs(waves).max(axis=1, keepdims=True)
-    np.testing.assert_allclose(turned(slave, angles) / peak, waves / peak, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(waves / peak, cycle.waves[0] / peak, rtol=0, atol=1e-6)
     slave.set_ripple(0)
-    metrics = summarise_compiled(cycle)
+    np.testing.assert_allclose(slave.get(*OUTPUTS), cycle.means[0], rtol=1e-12)
+
+
+def test_at_a_point_of_the_table_the_second_solver_agrees(exported, slave, solved):
+    """SciPy's, which shares no formula with the table's: means, and torque as it ripples."""
+    results = solved.results
+    angle = np.linspace(0, 3, 97)
+    slave.start(**duty(exported.file))
+    torque = total_torque(solved.orbit, angle)
+    np.testing.assert_allclose(turned(slave, angle)[0] / torque.max(), torque / torque.max(),
+                               rtol=0, atol=2e-5)  # fmt: skip
+    slave.set_ripple(0)
     torque, supply, back, case = slave.get(*OUTPUTS)
-    assert torque == pytest.approx(float(metrics.mean_torque), rel=1e-6)
-    assert supply == pytest.approx(float(metrics.supply_flow), rel=1e-6)
+    assert torque == pytest.approx(results["mean_torque"], rel=1e-6)
+    assert supply == pytest.approx(results["supply_flow"], rel=1e-6)
     # Oil of constant modulus grows by the work it does: model.md section 6, compression.
-    work = float(metrics.output_power + metrics.friction_loss)
-    grown = work / float(system.fluid.bulk_modulus)
+    work = results["output_power"] + results["friction_loss"]
+    grown = work / float(exported.file.system.fluid.bulk_modulus)
     assert back + case - supply == pytest.approx(grown, rel=1e-5)
 
 

@@ -16,15 +16,20 @@ from camring.physics.pressure import pressure_slope
 LOPSIDED = TabulatedWindow(np.array([-1.0, -0.5, 0.6, 1.0]), np.array([0.0, 0.9, 1.0, 0.0]))
 
 
-def with_window(motor, window):
-    return eqx.tree_at(lambda m: m.valve_plate.window, motor, window)
+KINDS = {
+    "lobes": (STRUCTURES[0], None),
+    "lopsided windows": (STRUCTURES[0], LOPSIDED),
+    "ring": (STRUCTURES[1], None),
+    "planar": (STRUCTURES[3], None),
+}
 
 
-@pytest.mark.parametrize("window", [None, LOPSIDED], ids=["ramps", "tabulated"])
-@pytest.mark.parametrize("structure", STRUCTURES, ids=lambda s: f"{s.kind}{s.degree}")
-def test_the_mirror_image_obeys_the_mirrored_equation_at_the_opposite_speed(structure, window):
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_mirror_image_obeys_the_mirrored_equation_at_the_opposite_speed(kind):
+    structure, window = KINDS[kind]
     motor, fluid, point = sound_case(5, structure)
-    motor = motor if window is None else with_window(motor, window)
+    if window is not None:
+        motor = eqx.tree_at(lambda m: m.valve_plate.window, motor, window)
     backwards = eqx.tree_at(lambda p: p.shaft_speed, point, -point.shaft_speed)
     angle = np.linspace(-2, 5, 301)  # meets no knot, where jerk has two sides
     pressure = np.random.default_rng(1).uniform(0, 3e7, angle.shape)
