@@ -5,6 +5,7 @@ import json
 import shutil
 import subprocess
 from math import tau
+from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree
 from zipfile import ZipFile
@@ -335,6 +336,27 @@ def test_every_function_of_the_standard_is_there(exported):
             ["cc", *STRICT, *extra, "-o", "motor.so", *files, "-lm"],
             cwd=folder / "sources", check=True,
         )  # fmt: skip
+
+
+def test_sanitizers_find_nothing(exported, tmp_path):
+    """Of addresses, leaks and undefined behaviour, over the table and beyond it."""
+    with ZipFile(exported.fmu) as archive:
+        archive.extractall(tmp_path)
+    driver = Path(__file__).with_name("fmu_driver.c")
+    sources = [tmp_path / "sources" / name for name in compiler.SOURCES]
+    checks = "-fsanitize=address,undefined"
+    built = subprocess.run(
+        ["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", checks, "-g",
+         "-fno-sanitize-recover=undefined", "-I", tmp_path / "sources",
+         "-o", tmp_path / "driver", driver, *sources, "-lm"],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    if "asan" in built.stderr:
+        pytest.skip("the compiler comes without its sanitizers")
+    assert built.returncode == 0, built.stderr
+    resources = (tmp_path / "resources").as_uri()
+    ran = subprocess.run([tmp_path / "driver", resources], capture_output=True, text=True)
+    assert (ran.returncode, ran.stderr) == (0, "")
 
 
 def test_modelica_reads_the_same_numbers(exported, slave):
