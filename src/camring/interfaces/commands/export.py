@@ -83,6 +83,7 @@ def export(
         only = f"{only},fmu" if only else "fmu"
     names = chosen_products(only)
     table = Ranges(speed, pressure, low_pressure, points)
+    table.require_use("fmu" in names)
     wishes = Wishes.read(chord, port_circle, outer_radius, ring_width, table)
     file = motor_of(motor)
     written = write_all(file, out, only=names, wishes=wishes, replace=force)

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from camring.interfaces.config import MotorFile
 from camring.interfaces.config.entries import Number, Unfit
 from camring.interfaces.config.keys import key_map
-from camring.interfaces.errors import InputError
+from camring.interfaces.errors import InputError, quote
 from camring.interfaces.ranges import axis, point_counts
 from camring.interfaces.units import to_si
 
@@ -31,6 +31,16 @@ class Ranges:
     pressure: str | None = None
     low_pressure: str | None = None
     points: str | None = None
+
+    def require_use(self, wanted: bool) -> None:
+        """Raises `InputError` for a range where no FMU is asked for: it would have no effect."""
+        for name, text in vars(self).items():
+            if text is not None and not wanted:
+                raise InputError(
+                    f"--{name.replace('_', '-')}",
+                    f"is {quote(text)} but no FMU is asked for",
+                    "add --fmu, or leave the option out",
+                )
 
 
 @dataclass(frozen=True, eq=False)
