@@ -23,8 +23,9 @@ from camring.interfaces.errors import InputError
 from camring.interfaces.export import Wishes, export
 from camring.interfaces.fmu import compiler, filling
 from camring.interfaces.fmu.axes import BAR, RPM, Ranges, axes_of
-from camring.interfaces.fmu.filling import Found, angles_of, filled_table, simulated_places
+from camring.interfaces.fmu.filling import filled_table
 from camring.interfaces.fmu.identity import identifier
+from camring.interfaces.fmu.places import Found, angles_of, simulated_places
 from camring.interfaces.fmu.table import QUANTITIES
 from camring.metrics.independent import independent_solution
 from camring.metrics.independent.results import total_torque

@@ -107,7 +107,7 @@ def test_ranges_are_those_of_a_map_and_zero_pressure_drop_belongs_to_the_table()
 def test_a_range_without_an_fmu_is_refused():
     Ranges(speed="1 rpm..2 rpm").require_use(True)
     Ranges().require_use(False)
-    with pytest.raises(InputError, match="--low-pressure .* add --fmu"):
+    with pytest.raises(InputError, match=r"--low-pressure .* add --fmu"):
         Ranges(low_pressure="1 bar..2 bar").require_use(False)
 
 
