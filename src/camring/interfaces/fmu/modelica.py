@@ -61,7 +61,7 @@ package {name} "{title}"
     end destructor;
   end Table;
 
-  function lookUp "Torque, supply, return and case flow"
+  pure function lookUp "Torque, supply, return and case flow"
     input Table table;
     input Real speed;
     input Real supplyPressure;
