@@ -9,6 +9,7 @@ import pytest
 from camring.interfaces.config import parse_motor_file
 from camring.interfaces.errors import InputError
 from camring.interfaces.fmu.axes import BAR, RPM, Ranges, axes_of
+from camring.interfaces.fmu.places import angles_of
 from camring.interfaces.fmu.table import Table, held_at_edges, spline_coefficients
 
 PERIODS = 24
@@ -102,6 +103,13 @@ def test_ranges_are_those_of_a_map_and_zero_pressure_drop_belongs_to_the_table()
     assert found.drops[0] == 0
     listed = axes(speed="30 rpm, 10 rpm")
     np.testing.assert_allclose(listed.speeds, [20 * pi / 60, pi])
+
+
+@pytest.mark.parametrize("text", [motor_files.SOUND, motor_files.ring()], ids=["lobes", "ring"])
+def test_windows_are_sampled_as_finely_on_any_cam(text):
+    motor = parse_motor_file(text).system.motor
+    step = tau / motor.surviving_order / angles_of(motor)
+    assert motor.valve_plate.pitch / 4096 <= step <= motor.valve_plate.pitch / 2048
 
 
 def test_a_range_without_an_fmu_is_refused():

@@ -20,8 +20,8 @@ from camring.physics.resolution import Resolution
 
 __all__ = ["Found", "angles_of", "simulated_places"]
 
-ROUND_THE_CAM = 2048
-"""Samples of one period of the cam, which all pistons' phases share."""
+IN_A_PITCH = 2048
+"""Samples of one lobe pitch, which all pistons' phases share."""
 FEWEST_ANGLES = 128
 CHUNK = 64
 
@@ -42,7 +42,7 @@ class Found:
 
 def angles_of(motor: Motor) -> int:
     """Samples of one period of the ripple."""
-    wanted = ROUND_THE_CAM / motor.distinct_phases
+    wanted = IN_A_PITCH * (motor.lobes // motor.cam.repeats) / motor.distinct_phases
     return max(FEWEST_ANGLES, 2 ** ceil(log2(wanted)))
 
 
