@@ -1,4 +1,4 @@
-"""`camring export`: files for CAD, grinding machine, spreadsheet and workshop."""
+"""`camring export`: files for CAD, grinding machine, workshop and system simulation."""
 
 from pathlib import Path
 from typing import Annotated
@@ -14,8 +14,8 @@ def export(
     only: Annotated[
         str | None,
         typer.Option(
-            help="Some of ring,points,plate,sheet,step, or all; else all but step, which needs "
-            "the extra camring[step].",
+            help="Some of ring,points,plate,sheet,step,fmu, or all; else all but step, which needs "
+            "the extra camring[step], and fmu.",
         ),
     ] = None,
     chord: Annotated[
@@ -36,6 +36,24 @@ def export(
     ring_width: Annotated[
         str | None, typer.Option(help="Of the ring's body; else the roller's length.")
     ] = None,
+    fmu: Annotated[
+        bool, typer.Option("--fmu", help="The same as --only fmu: a model for system simulation.")
+    ] = False,
+    speed: Annotated[
+        str | None,
+        typer.Option(help="Of the FMU's table, \"10 rpm..300 rpm\"; else from the file's points."),
+    ] = None,
+    pressure: Annotated[
+        str | None,
+        typer.Option(help='Its supply pressures, absolute: "50 bar..350 bar"; else likewise.'),
+    ] = None,
+    low_pressure: Annotated[
+        str | None,
+        typer.Option(help='Its pressures of the lower port, absolute: "5 bar..20 bar".'),
+    ] = None,
+    points: Annotated[
+        str | None, typer.Option(help="Its speeds and pressures, a sign of each; else 13x7.")
+    ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Replace files of the same names.")
     ] = False,
@@ -48,15 +66,25 @@ def export(
     ring.dxf and ring.svg hold the path of the roller centre and the working
     surface; ring_points.csv has points of both with normals and curvature;
     valve_plate.dxf and .csv the ports with their timing; sheet.svg is an A3
-    drawing; ring.step a solid. An undercut ring is refused.
+    drawing; ring.step a solid. An undercut ring is refused. NAME.fmu (--fmu) is
+    the motor for Simulink, Amesim and others, NAME.mo for Modelica.
     """
+    from camring.interfaces.compilation_cache import keep_compiled_programs
+
+    keep_compiled_programs()
+
     from camring.interfaces.export import Wishes, chosen_products
     from camring.interfaces.export import export as write_all
     from camring.interfaces.export.source import motor_of
     from camring.interfaces.export.told import document, print_written
+    from camring.interfaces.fmu.axes import Ranges
 
+    if fmu:
+        only = f"{only},fmu" if only else "fmu"
     names = chosen_products(only)
-    wishes = Wishes.read(chord, port_circle, outer_radius, ring_width)
+    table = Ranges(speed, pressure, low_pressure, points)
+    table.require_use("fmu" in names)
+    wishes = Wishes.read(chord, port_circle, outer_radius, ring_width, table)
     file = motor_of(motor)
     written = write_all(file, out, only=names, wishes=wishes, replace=force)
     if json:

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from functools import cached_property
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from camring.geometry.port_shape import PlatePorts
 from camring.interfaces.config import MotorFile
@@ -20,6 +20,7 @@ from camring.interfaces.export.ring_points import ring_points
 from camring.interfaces.export.ring_step import ring_step
 from camring.interfaces.export.ring_svg import ring_svg
 from camring.interfaces.export.sheet import sheet_svg
+from camring.interfaces.fmu.axes import Ranges
 from camring.interfaces.study_folder import unwritable, write_safely
 from camring.interfaces.units import UnitError, to_si
 
@@ -36,6 +37,8 @@ class Wishes:
     port_circle: float | None = None
     outer_radius: float | None = None
     ring_width: float | None = None
+    table: Ranges = field(default_factory=Ranges)
+    """Speeds and pressures of the FMU's table, as typed."""
 
     @classmethod
     def read(
@@ -44,6 +47,7 @@ class Wishes:
         port_circle: str | None = None,
         outer_radius: str | None = None,
         ring_width: str | None = None,
+        table: Ranges | None = None,
     ) -> "Wishes":
         """Wishes from what stands on the command line, such as "42 mm".
 
@@ -57,16 +61,24 @@ class Wishes:
             _length("--port-circle", port_circle, "42 mm"),
             _length("--outer-radius", outer_radius, "140 mm"),
             _length("--ring-width", ring_width, "30 mm"),
+            table or Ranges(),
         )
 
 
 @dataclass(frozen=True)
 class Product:
-    """One file that was written, with a sentence on what it holds and figures about it."""
+    """One file that was written, with a sentence on what it holds and figures about it.
+
+    Attributes
+    ----------
+    notes
+        What its user should know, a sentence each.
+    """
 
     path: Path
     holds: str
     figures: dict[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
 
 class _Job:
@@ -110,7 +122,17 @@ class _Job:
         return self.wishes.ring_width or self.ring.roller_length
 
 
-Made = Iterator[tuple[str, bytes, str, dict[str, float]]]
+class File(NamedTuple):
+    """One file on its way to the folder; its name may begin with a folder of its own."""
+
+    name: str
+    content: bytes
+    holds: str
+    figures: dict[str, float]
+    notes: tuple[str, ...] = ()
+
+
+Made = Iterator[File]
 
 
 def _ring(job: _Job) -> Made:
@@ -118,14 +140,14 @@ def _ring(job: _Job) -> Made:
     error = max(ring.pitch.error, ring.surface.error)
     figures = {"normal_error": error, "pieces": float(ring.surface.pieces)}
     holds = f"pitch curve and working surface, within {1e6 * error:.2g} um"
-    yield "ring.dxf", ring_dxf(ring, job.about), holds, figures
-    yield "ring.svg", ring_svg(ring, job.about), "the same curves in true size", figures
+    yield File("ring.dxf", ring_dxf(ring, job.about), holds, figures)
+    yield File("ring.svg", ring_svg(ring, job.about), "the same curves in true size", figures)
 
 
 def _points(job: _Job) -> Made:
     content, step = ring_points(job.ring, job.about, job.wishes.chord)
     holds = f"points every {step:g} deg, chords within {1e6 * job.wishes.chord:g} um"
-    yield "ring_points.csv", content, holds, {"step_degrees": step}
+    yield File("ring_points.csv", content, holds, {"step_degrees": step})
 
 
 def _plate(job: _Job) -> Made:
@@ -133,21 +155,41 @@ def _plate(job: _Job) -> Made:
     figures = {"port_circle": ports.circle, "port_height": ports.height}
     source = circle_from(ports, asked)
     holds = f"ports on a circle of {1e3 * ports.circle:.4g} mm radius, {source}"
-    yield "valve_plate.dxf", plate_dxf(ports, job.about, asked), holds, figures
+    yield File("valve_plate.dxf", plate_dxf(ports, job.about, asked), holds, figures)
     table = plate_table(ports, job.about, asked)
-    yield "valve_plate.csv", table, "edges of all ports, degrees", figures
+    yield File("valve_plate.csv", table, "edges of all ports, degrees", figures)
 
 
 def _sheet(job: _Job) -> Made:
     content = sheet_svg(job.ring, job.ports, job.about, job.outer_radius, job.ring_width)
-    yield "sheet.svg", content, "drawing sheet A3; print it from any browser", {}
+    yield File("sheet.svg", content, "drawing sheet A3; print it from any browser", {})
 
 
 def _step(job: _Job) -> Made:
     content = ring_step(job.ring, job.about, job.outer_radius, job.ring_width)
     figures = {"outer_radius": job.outer_radius, "ring_width": job.ring_width}
     holds = f"the ring as a solid of {2e3 * job.outer_radius:.4g} x {1e3 * job.ring_width:.4g} mm"
-    yield "ring.step", content, holds, figures
+    yield File("ring.step", content, holds, figures)
+
+
+def _fmu(job: _Job) -> Made:
+    # Simulates, which no other product does.
+    from camring.interfaces.fmu.axes import axes_of
+    from camring.interfaces.fmu.description import starts
+    from camring.interfaces.fmu.filling import filled_table
+    from camring.interfaces.fmu.modelica import modelica_files
+    from camring.interfaces.fmu.package import fmu_of, statements
+
+    filled = filled_table(job.file, axes_of(job.file, job.wishes.table))
+    fmu, said = fmu_of(job.file, filled), statements(job.file, filled)
+    holds = f"FMU for co-simulation, FMI 2.0: {fmu.parts}"
+    yield File(f"{fmu.name}.fmu", fmu.content, holds, filled.errors.figures(), tuple(said[1:]))
+    start = starts(job.file.system.operating_points[0])
+    table = filled.table
+    files = modelica_files(fmu.name, said, table.content(), start, table.periods)
+    for name, content in files.items():
+        holds = "Modelica package" if name.endswith(".mo") else "belongs to it"
+        yield File(name, content, holds, {})
 
 
 PRODUCTS: dict[str, Callable[[_Job], Made]] = {
@@ -156,12 +198,13 @@ PRODUCTS: dict[str, Callable[[_Job], Made]] = {
     "plate": _plate,
     "sheet": _sheet,
     "step": _step,
+    "fmu": _fmu,
 }
-_NEEDS_EXTRA = ("step",)
+_ONLY_IF_NAMED = ("step", "fmu")
 
 
 def chosen_products(only: str | None) -> tuple[str, ...]:
-    """The products named in a list with commas; all that need no extra when there is none.
+    """The products named in a list with commas; without one all that come unasked.
 
     Raises
     ------
@@ -169,7 +212,7 @@ def chosen_products(only: str | None) -> tuple[str, ...]:
         For a name that is none, with its nearest neighbour.
     """
     if only is None:
-        return tuple(name for name in PRODUCTS if name not in _NEEDS_EXTRA)
+        return tuple(name for name in PRODUCTS if name not in _ONLY_IF_NAMED)
     names = [name.strip() for name in only.split(",") if name.strip()]
     if names == ["all"]:
         return tuple(PRODUCTS)
@@ -193,12 +236,12 @@ def export(
     wishes: Wishes | None = None,
     replace: bool = False,
 ) -> list[Product]:
-    """Write the files of a motor for CAD, grinding machine, spreadsheet and workshop.
+    """Write the files of a motor for CAD, grinding machine, workshop and system simulation.
 
     Parameters
     ----------
     only
-        Names of `PRODUCTS`; all that need no extra when left out.
+        Names of `PRODUCTS`; all but the solid and the FMU when left out.
     replace
         Whether files of the same names may be replaced.
 
@@ -216,13 +259,14 @@ def export(
     place, job = Path(folder), _Job(file, wishes or Wishes())
     names = chosen_products(None) if only is None else chosen_products(",".join(only))
     made = [each for name in names for each in PRODUCTS[name](job)]
-    _require_room(place, [name for name, *_ in made], replace)
+    _require_room(place, [each.name for each in made], replace)
     written = []
     try:
-        place.mkdir(parents=True, exist_ok=True)
-        for name, content, holds, figures in made:
-            write_safely(place / name, content)
-            written.append(Product(place / name, holds, figures))
+        for each in made:
+            path = place / each.name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_safely(path, each.content)
+            written.append(Product(path, each.holds, each.figures, each.notes))
     except OSError as error:
         raise unwritable(place, error) from error
     return written
@@ -256,4 +300,8 @@ def _length(option: str, text: str | None, example: str) -> float | None:
 
 def figures_of(written: Sequence[Product]) -> list[dict[str, Any]]:
     """What was written, as a document for programs; lengths in SI."""
-    return [{"path": printable(each.path), "holds": each.holds, **each.figures} for each in written]
+    return [
+        {"path": printable(each.path), "holds": each.holds, **each.figures}
+        | ({"notes": list(each.notes)} if each.notes else {})
+        for each in written
+    ]

@@ -15,7 +15,7 @@ __all__ = ["document", "print_written"]
 
 
 def print_written(file: MotorFile, written: Sequence[Product]) -> None:
-    """A line for each file."""
+    """A line for each file, and below them what their users should know."""
     name = file.system.motor.name or printable(file.path)
     table = Table(title=escape(name), title_justify="left", box=None, show_header=False)
     table.add_column(overflow="fold")
@@ -23,6 +23,8 @@ def print_written(file: MotorFile, written: Sequence[Product]) -> None:
     for each in written:
         table.add_row(escape(printable(each.path)), escape(each.holds))
     console().print(table)
+    for note in (note for each in written for note in each.notes):
+        console().print(escape(note))
 
 
 def document(file: MotorFile, written: Sequence[Product]) -> str:

@@ -1,0 +1,1 @@
+"""A motor for other programs' system models: tables of its quasi-steady cycle in C."""
