@@ -96,10 +96,18 @@ def evaluate_many(
     look = look or LanesLook.search()
     judge_chunk = _in_lanes if fits(system.motor) else _one_by_one
     judged = _judged_by(judge_chunk, space, system, goal, look, chunk)
-    starts = range(0, len(points), chunk)
+    first = judged(points[:chunk])
+    whole = jax.tree.map(lambda leaf: np.empty((*leaf.shape[:-1], len(points)), leaf.dtype), first)
+
+    def keep(start: int, part: Assessment) -> None:
+        for place, leaf in zip(jax.tree.leaves(whole), jax.tree.leaves(part), strict=True):
+            place[..., start : start + chunk] = leaf
+
+    keep(0, first)
     with ThreadPoolExecutor(threads or cores()) as pool:
-        parts = list(pool.map(lambda start: judged(points[start : start + chunk]), starts))
-    return jax.tree.map(lambda *leaves: np.concatenate(leaves, axis=-1), *parts)
+        rest = range(chunk, len(points), chunk)
+        list(pool.map(lambda start: keep(start, judged(points[start : start + chunk])), rest))
+    return whole
 
 
 def _judged_by(
