@@ -79,10 +79,10 @@ def main() -> None:
     )
     points = np.random.default_rng(0).uniform(size=(asked.designs, space.dimension))
     rows: dict[str, float] = {}
-    most = None
+    of_million = None
     if asked.million:  # first, while the process holds nothing else
-        most = million(space, system, goal)
-        print("A million designs: {:.3g} s, {:.2f} GiB at most.\n".format(*most))
+        of_million = million(space, system, goal)
+        print("A million designs: {:.3g} s, {:.2f} GiB at most.\n".format(*of_million))
 
     motor, fluid, point = system.motor, system.fluid, system.operating_points[0]
     rival = fastest(lambda: independent_results(motor, fluid, point, goal.harmonics, 1e-9), 1)
@@ -124,7 +124,7 @@ def main() -> None:
     for count, value in growth.items():
         print(f"| {count:,} | {value:.3g} |")
     RESULTS.mkdir(exist_ok=True)
-    written = {"seconds": rows, "errors": errors, "slopes": off, "growth": growth, "million": most}
+    written = {"seconds": rows, "errors": errors, "slopes": off, "growth": growth, "million": of_million}
     (RESULTS / "batch_speed.json").write_text(json.dumps(written, indent=1) + "\n")
 
 
