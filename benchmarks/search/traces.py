@@ -37,6 +37,9 @@ class Trace:
     method: str
     seed: int
     budget: int
+    dimension: int
+    constraint_count: int
+    best_known: float
     seconds: float
     evaluating: float
     ended: str
@@ -63,9 +66,22 @@ def trace_of(oracle: Oracle, method: str, seconds: float, ended: str) -> Trace:
         objective.append(rounded_up(found.objective, 9 if improves else 4))
         violation.append(0.0 if found.feasible else float(f"{found.violation:.2g}"))
     slopes = oracle.slopes_before if any(oracle.slopes_before) else []
-    name, seed = oracle.problem.name, oracle.seed
-    times = round(seconds, 3), round(oracle.evaluating, 3)
-    return Trace(name, method, seed, oracle.budget, *times, ended, objective, violation, slopes)
+    problem = oracle.problem
+    return Trace(
+        problem=problem.name,
+        method=method,
+        seed=oracle.seed,
+        budget=oracle.budget,
+        dimension=problem.dimension,
+        constraint_count=problem.constraint_count,
+        best_known=problem.best,
+        seconds=round(seconds, 3),
+        evaluating=round(oracle.evaluating, 3),
+        ended=ended,
+        objective=objective,
+        violation=violation,
+        slopes=slopes,
+    )
 
 
 def rounded_up(value: float, digits: int) -> float:
