@@ -49,6 +49,8 @@ class SearchProblem:
         The points that a user has before any search.
     best
         The best value known: of the literature, or for a motor of descents from many starts.
+    minimiser
+        Where the literature has it, on the unit box; to the digits printed there.
     source
         Who published problem and value.
     """
@@ -62,4 +64,5 @@ class SearchProblem:
     approximate: Callable[[np.ndarray], np.ndarray] | None = None
     given: tuple[tuple[float, ...], ...] = ()
     best: float = -float("inf")
+    minimiser: tuple[float, ...] = ()
     source: str = ""

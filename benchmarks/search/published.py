@@ -18,7 +18,13 @@ Function = Callable[[jax.Array], tuple[jax.Array, list]]
 
 
 def _problem(
-    name: str, low: list[float], high: list[float], both: Function, best: float, source: str
+    name: str,
+    low: list[float],
+    high: list[float],
+    both: Function,
+    best: float,
+    minimiser: list[float],
+    source: str,
 ) -> SearchProblem:
     lower, upper = np.array(low, dtype=float), np.array(high, dtype=float)
 
@@ -39,7 +45,15 @@ def _problem(
     count = len(evaluate(np.full(len(lower), 0.5)).constraints)
     budget = BUDGET_OF_TWO if len(lower) == 2 else BUDGET
     return SearchProblem(
-        name, len(lower), count, budget, evaluate, sloped, best=best, source=source
+        name,
+        len(lower),
+        count,
+        budget,
+        evaluate,
+        sloped,
+        best=best,
+        minimiser=tuple((np.array(minimiser) - lower) / (upper - lower)),
+        source=source,
     )
 
 
@@ -56,6 +70,7 @@ def townsend() -> SearchProblem:
         [2.25, 1.75],
         both,
         -2.0239884,
+        [2.0052938, 1.1944509],
         "Townsend (2014), Constrained optimization in Chebfun",
     )
 
@@ -72,6 +87,7 @@ def gramacy() -> SearchProblem:
         [1, 1],
         both,
         0.5997880,
+        [0.1954, 0.4044],
         "Gramacy et al. (2016), Modeling an augmented Lagrangian for blackbox constrained "
         "optimization, Technometrics 58",
     )
@@ -92,6 +108,7 @@ def branin_disc() -> SearchProblem:
         [10, 15],
         both,
         0.397887,
+        [np.pi, 2.275],
         "Gelbart, Snoek and Adams (2014), Bayesian optimization with unknown constraints",
     )
 
@@ -104,7 +121,7 @@ def g06() -> SearchProblem:
         ]
         return (x[0] - 10) ** 3 + (x[1] - 20) ** 3, limits
 
-    return _problem("g06", [13, 0], [100, 100], both, -6961.8138756, CEC)
+    return _problem("g06", [13, 0], [100, 100], both, -6961.8138756, [14.095, 0.84296079], CEC)
 
 
 def g07() -> SearchProblem:
@@ -137,7 +154,9 @@ def g07() -> SearchProblem:
         ]
         return value, limits
 
-    return _problem("g07", [-10] * 10, [10] * 10, both, 24.3062091, CEC)
+    minimiser = [2.171996, 2.363683, 8.773926, 5.095984, 0.990655]
+    minimiser += [1.430574, 1.321644, 9.828726, 8.280092, 8.375927]
+    return _problem("g07", [-10] * 10, [10] * 10, both, 24.3062091, minimiser, CEC)
 
 
 def g24() -> SearchProblem:
@@ -148,7 +167,7 @@ def g24() -> SearchProblem:
         ]
         return -x[0] - x[1], limits
 
-    return _problem("g24", [0, 0], [3, 4], both, -5.5080133, CEC)
+    return _problem("g24", [0, 0], [3, 4], both, -5.5080133, [2.3295202, 3.1784931], CEC)
 
 
 def hartmann6() -> SearchProblem:
@@ -179,6 +198,7 @@ def hartmann6() -> SearchProblem:
         [1] * 6,
         both,
         -3.32237,
+        [0.20169, 0.150011, 0.476874, 0.275332, 0.311652, 0.6573],
         "Dixon and Szego (1978), Towards global optimisation 2",
     )
 
@@ -201,6 +221,7 @@ def pressure_vessel() -> SearchProblem:
         [6.1875, 6.1875, 200, 200],
         both,
         5885.3328,
+        [0.7781686, 0.3846492, 40.3196187, 200],
         "Kannan and Kramer (1994), J. Mech. Des. 116; thicknesses continuous: Yang et al. (2013)",
     )
 
@@ -236,6 +257,7 @@ def welded_beam() -> SearchProblem:
         [2, 10, 10, 2],
         both,
         1.7248523,
+        [0.205730, 3.470489, 9.036624, 0.205730],
         "Rao (1996), Engineering optimization; value: Coello and Mezura-Montes (2002)",
     )
 
