@@ -50,7 +50,7 @@ def main() -> None:
             print(f"{asked.minutes:g} minutes are over; run again to go on.")
             break
         oracle = Oracle(problem, seed, round(method.share * problem.budget))
-        clock = time.perf_counter()
+        clock, processor = time.perf_counter(), time.process_time()
         try:
             with one_linear_algebra_thread():
                 ended = method.run(oracle)
@@ -62,7 +62,8 @@ def main() -> None:
             missing.add(name)
             print(f"{name} is left out: {error}", file=sys.stderr)
             continue
-        trace = trace_of(oracle, name, time.perf_counter() - clock, ended)
+        seconds, processor = time.perf_counter() - clock, time.process_time() - processor
+        trace = trace_of(oracle, name, seconds, ended, processor)
         keep(trace, asked.out)
         print(said(trace), file=sys.stderr, flush=True)
     pack(asked.out)

@@ -113,9 +113,9 @@ class Campaign:
         self, problem: str, target: float, entries: Sequence[Entry]
     ) -> tuple[str, RunningTime]:
         """The entry that is expected to be there first."""
-        nobody = "none", RunningTime(math.inf, 0, 0)
         times = [(each.name, self.time(each, problem, target)) for each in entries]
         usable = [(name, time) for name, time in times if time is not None and time.successes]
+        nobody = "none", RunningTime(math.inf, 0, sum(t.runs for _, t in times if t is not None))
         return min(usable, key=lambda pair: pair[1].expected, default=nobody)
 
     def lowest(self, problem: str) -> float:

@@ -1,6 +1,8 @@
 """Between a method and a problem: counts, times and keeps every evaluation."""
 
 import time
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -32,7 +34,7 @@ class Oracle:
         self.dimension, self.constraint_count = problem.dimension, problem.constraint_count
         self.outcomes: list[Outcome] = []
         self.slopes_before: list[int] = []
-        self.evaluating = 0.0
+        self.evaluating, self.processor = 0.0, 0.0  # seconds in the problem, wall and processor
         self._known: dict[bytes, Outcome] = {}
         self._sloped: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}
 
@@ -53,9 +55,7 @@ class Oracle:
         if key not in self._known:
             if self.left <= 0:
                 raise Spent
-            started = time.perf_counter()
-            found = self.problem.evaluate(at)
-            self.evaluating += time.perf_counter() - started
+            found = self._timed(self.problem.evaluate, at)
             self._known[key] = found
             self.outcomes.append(found)
             self.slopes_before.append(len(self._sloped))
@@ -67,11 +67,15 @@ class Oracle:
     def slopes(self, point: Point) -> tuple[np.ndarray, np.ndarray]:
         key = np.asarray(point, dtype=float).tobytes()
         if key not in self._sloped:
-            started = time.perf_counter()
-            found = self.problem.slopes(point)
-            self.evaluating += time.perf_counter() - started
-            self._sloped[key] = found
+            self._sloped[key] = self._timed(self.problem.slopes, point)
         return self._sloped[key]
+
+    def _timed(self, function: Callable[[Point], Any], point: Point) -> Any:
+        wall, processor = time.perf_counter(), time.process_time()
+        found = function(point)
+        self.evaluating += time.perf_counter() - wall
+        self.processor += time.process_time() - processor
+        return found
 
     def __call__(self, point: Point) -> tuple[float, np.ndarray]:
         """Objective and constraints, finite: a failure is as bad as the worst before it.

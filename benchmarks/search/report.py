@@ -41,12 +41,13 @@ def running_times(campaign: Campaign, target: float) -> str:
     return "\n".join(lines)
 
 
-def ratio(ours: float, theirs: float) -> str:
-    if math.isinf(ours) and math.isinf(theirs):
-        return "neither"
-    if math.isinf(theirs):
-        return "they never"
-    return "we never" if math.isinf(ours) else f"{ours / theirs:.2f}"
+def ratio(ours: RunningTime | None, theirs: RunningTime) -> str:
+    """Our expected evaluations over theirs; nothing where ours has not been run."""
+    if ours is None or not ours.runs:
+        return ""
+    if not theirs.successes:
+        return "they never" if ours.successes else "neither"
+    return f"{ours.expected / theirs.expected:.2f}" if ours.successes else "we never"
 
 
 def aims(campaign: Campaign, target: float) -> str:
@@ -61,13 +62,11 @@ def aims(campaign: Campaign, target: float) -> str:
         usual = campaign.time(campaign.named("bayesian"), problem, target)
         own, best = campaign.best(problem, target, campaign.ours_without_slopes)
         slopes = [campaign.time(each, problem, target) for each in campaign.ours_with_slopes]
-        values = [math.inf if each is None else each.expected for each in slopes]
-        against = " / ".join(ratio(value, theirs.expected) for value in values)
-        learned = math.inf if usual is None else usual.expected
+        against = " / ".join(ratio(each, theirs) for each in slopes)
         lines.append(
             f"| {problem} | {rival} {said(theirs)} "
-            f"| {said(usual)} | {ratio(learned, theirs.expected)} "
-            f"| {own} {said(best)} | {ratio(best.expected, theirs.expected)} "
+            f"| {said(usual)} | {ratio(usual, theirs)} "
+            f"| {own} {said(best)} | {ratio(best, theirs)} "
             f"| {' / '.join(said(each) for each in slopes)} | {against} |"
         )
     return "\n".join(lines)
@@ -119,7 +118,7 @@ def lost(campaign: Campaign) -> str:
 
 
 def thinking(campaign: Campaign) -> str:
-    """Milliseconds of a run's own work for each evaluation, median over runs."""
+    """Processor milliseconds of the method itself for each evaluation, median over runs."""
     kinds = {
         "2 variables": lambda problem: campaign.dimension[problem] == 2,
         "4 to 10": lambda problem: campaign.dimension[problem] > 2 and problem not in MOTORS,
@@ -135,11 +134,11 @@ def thinking(campaign: Campaign) -> str:
         cells = []
         for belongs in kinds.values():
             each = [
-                1e3 * (trace.seconds - trace.evaluating) / len(trace.objective)
+                1e3 * trace.thinking / len(trace.objective)
                 for problem in campaign.problems
                 if belongs(problem)
                 for trace in campaign.runs(entry, problem)
-                if trace.objective
+                if trace.thinking is not None
             ]
             cells.append(f"{statistics.median(each):.2g}" if each else "")
         most = max(len(t.objective) for p in campaign.problems for t in campaign.runs(entry, p))
@@ -172,7 +171,7 @@ def main() -> None:
         print(f"\n## Expected evaluations to {name}\n\n{running_times(campaign, target)}")
         print(f"\n## Aims, {name}\n\n{aims(campaign, target)}\n\n{counts(campaign, target)}")
     print(f"\n## Lost\n\n{lost(campaign)}")
-    print(f"\n## Own time, ms an evaluation\n\n{thinking(campaign)}")
+    print(f"\n## Own processor time, ms an evaluation\n\n{thinking(campaign)}")
     try:
         from benchmarks.search.pictures import convergence, profiles
     except ImportError:

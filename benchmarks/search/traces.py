@@ -29,6 +29,8 @@ class Trace:
         How many slopes had been asked for before each evaluation; empty if none ever.
     seconds, evaluating
         Wall time of the run, and what of it went into the problem itself.
+    thinking
+        Processor seconds of the method itself, all threads; None where they were not taken.
     ended
         Why it ended, in a sentence.
     """
@@ -46,13 +48,17 @@ class Trace:
     objective: list[float | None]
     violation: list[float | None]
     slopes: list[int] = field(default_factory=list)
+    thinking: float | None = None
 
     @property
     def key(self) -> tuple[str, str, int]:
         return self.problem, self.method, self.seed
 
 
-def trace_of(oracle: Oracle, method: str, seconds: float, ended: str) -> Trace:
+def trace_of(
+    oracle: Oracle, method: str, seconds: float, ended: str, processor: float | None = None
+) -> Trace:
+    """What an oracle has seen of a run that took so many seconds, of wall and of processor."""
     objective: list[float | None] = []
     violation: list[float | None] = []
     best = math.inf
@@ -81,6 +87,7 @@ def trace_of(oracle: Oracle, method: str, seconds: float, ended: str) -> Trace:
         objective=objective,
         violation=violation,
         slopes=slopes,
+        thinking=None if processor is None else round(processor - oracle.processor, 3),
     )
 
 
