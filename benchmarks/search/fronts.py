@@ -1,12 +1,13 @@
 """camring's front of the wheel motor beside NSGA-II's, for the same processor time.
 
     python -m benchmarks.search.fronts [--motor FILE] [--of torque_ripple,efficiency]
-        [--seeds 5] [--times 2]
+        [--seeds 5] [--times 0.5 1] [--points 50]
 
 NSGA-II (pymoo) evaluates its populations by `evaluate_many`, the fastest there is here, on
 one thread, keeps the same limits drawn in by `SAFETY`, and gets so many times the
-processor time of camring's search. Its last front is then looked at as camring's is: at
-finer resolution, and what breaks a limit there is left out. The hypervolume of each front
+processor time of camring's search. As many designs of its front as camring's has, evenly
+spread, are then looked at as camring's are: at finer resolution, where what breaks a limit
+is left out. The hypervolume of each front
 is its share of one box about all of them. Saved in benchmarks/results/search/fronts.json
 with every design's values; the picture is docs/pictures/search_fronts.
 """
@@ -44,7 +45,7 @@ def main() -> None:
     parser.add_argument("--motor", type=Path, default=ROOT / "examples" / "wheel_motor.toml")
     parser.add_argument("--of", default="torque_ripple,efficiency")
     parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--times", type=float, nargs="+", default=[1.0, 2.0])
+    parser.add_argument("--times", type=float, nargs="+", default=[0.5, 1.0])
     parser.add_argument("--points", type=int, default=50)
     asked = parser.parse_args()
 
@@ -56,7 +57,8 @@ def main() -> None:
     print(f"camring: {own.seconds:.1f} s of processor time, {len(own.losses)} designs", flush=True)
     fronts = [own]
     for seed in range(asked.seeds):
-        for found in evolved(file, names, seed, [each * own.seconds for each in asked.times]):
+        times = [each * own.seconds for each in asked.times]
+        for found in evolved(file, names, seed, times, asked.points):
             fronts.append(found)
             print(f"{found.name}: {found.evaluations} designs judged", flush=True)
     shares = volumes([each.losses for each in fronts])
@@ -97,7 +99,7 @@ def ours(file, names, points: int) -> Found:
     return Found("camring", marks[0] - started, count, losses, len(found.dropped))
 
 
-def evolved(file, names, seed: int, seconds: list[float]):
+def evolved(file, names, seed: int, seconds: list[float], points: int):
     """NSGA-II's front whenever one of these processor times is over."""
     import numpy as np
     from pymoo.algorithms.moo.nsga2 import NSGA2
@@ -143,14 +145,14 @@ def evolved(file, names, seed: int, seconds: list[float]):
         spent = time.process_time() - started - paused
         if spent >= left[0]:
             clock = time.process_time()
-            kept, dropped = looked_again(file, names, algorithm.opt)
+            kept, dropped = looked_again(file, names, algorithm.opt, points)
             paused += time.process_time() - clock
             yield Found(f"NSGA-II, seed {seed}, {spent:.0f} s", spent, count, kept, dropped)
             left.pop(0)
 
 
-def looked_again(file, names, population) -> tuple[list[list[float]], int]:
-    """Losses at finer resolution of what keeps every limit there."""
+def looked_again(file, names, population, count: int) -> tuple[list[list[float]], int]:
+    """Losses at finer resolution of so many designs, those that keep every limit there."""
     import numpy as np
 
     from camring.interfaces.compiled import assess
@@ -158,13 +160,19 @@ def looked_again(file, names, population) -> tuple[list[list[float]], int]:
     from camring.interfaces.evaluator import outcome_of
     from camring.interfaces.trade_off import SENSES, shares_of
     from camring.physics.resolution import Resolution
+    from camring.search.pareto import box_of, evenly_spread
 
+    feasible = np.all(population.get("FEAS").reshape(len(population), -1), axis=1)
+    points, losses = population.get("X")[feasible], population.get("F")[feasible]
+    if not len(points):
+        return [], len(population)
+    lowest, width = box_of(losses)
     kept, dropped = [], 0
-    for point, feasible in zip(population.get("X"), population.get("FEAS"), strict=True):
+    for point in points[evenly_spread((losses - lowest) / width, count)]:
         motor = parse_motor_file(file.with_design(point.tolist()), file.path)
         outcome = outcome_of(assess(motor.system, motor.goal, Resolution.fine()))
         broken = any(value > 0 for value in outcome.constraints.values())
-        if outcome.failure or broken or not np.all(feasible):
+        if outcome.failure or broken:
             dropped += 1
             continue
         columns = [np.array([each[n] for each in outcome.results]) for n in names]
