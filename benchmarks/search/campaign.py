@@ -1,7 +1,7 @@
 """All runs together: which methods, which problems, and how one did on the other."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from benchmarks.search.measures import SLOPES_COST, RunningTime, running_time
@@ -54,6 +54,22 @@ class Entry:
         return self.method in OURS
 
 
+@dataclass(frozen=True)
+class Duel:
+    """One of ours beside one rival, on one problem, to one target."""
+
+    rival: Entry
+    own_time: RunningTime
+    rival_time: RunningTime
+
+    @property
+    def ratio(self) -> float:
+        """Our expected evaluations over theirs; 0 where they never get there but we do."""
+        if not self.rival_time.successes:
+            return 0.0 if self.own_time.successes else math.nan
+        return self.own_time.expected / self.rival_time.expected
+
+
 class Campaign:
     """Runs sorted by method and problem.
 
@@ -85,38 +101,34 @@ class Campaign:
         return cls(runs)
 
     @property
-    def rivals(self) -> list[Entry]:
-        return [each for each in self.entries if not each.is_ours]
-
-    @property
-    def ours_without_slopes(self) -> list[Entry]:
-        return [each for each in self.entries if each.is_ours and each.method != WITH_SLOPES]
-
-    @property
-    def ours_with_slopes(self) -> list[Entry]:
-        return [each for each in self.entries if each.method == WITH_SLOPES]
-
-    def named(self, method: str) -> Entry:
-        return Entry(method)
+    def ours(self) -> list[Entry]:
+        return [each for each in self.entries if each.is_ours]
 
     def runs(self, entry: Entry, problem: str) -> list[Trace]:
         return self._runs.get((problem, entry.method), [])
 
-    def time(self, entry: Entry, problem: str, target: float) -> RunningTime | None:
-        """None where the method has no run on the problem."""
-        traces = self.runs(entry, problem)
+    def time(
+        self, entry: Entry, problem: str, target: float, seeds: set[int] | None = None
+    ) -> RunningTime | None:
+        """None where the method has no run on the problem (of these seeds)."""
+        traces = [t for t in self.runs(entry, problem) if seeds is None or t.seed in seeds]
         if not traces:
             return None
         return running_time(traces, self.best_known[problem], target, entry.slopes_cost)
 
-    def best(
-        self, problem: str, target: float, entries: Sequence[Entry]
-    ) -> tuple[str, RunningTime]:
-        """The entry that is expected to be there first."""
-        times = [(each.name, self.time(each, problem, target)) for each in entries]
-        usable = [(name, time) for name, time in times if time is not None and time.successes]
-        nobody = "none", RunningTime(math.inf, 0, sum(t.runs for _, t in times if t is not None))
-        return min(usable, key=lambda pair: pair[1].expected, default=nobody)
+    def duels(self, own: Entry, problem: str, target: float) -> list[Duel]:
+        """Beside every rival, on the seeds that both have; the hardest rival first."""
+        found = []
+        mine = {trace.seed for trace in self.runs(own, problem)}
+        for rival in self.entries:
+            common = mine & {trace.seed for trace in self.runs(rival, problem)}
+            if rival.is_ours or not common:
+                continue
+            own_time = self.time(own, problem, target, common)
+            rival_time = self.time(rival, problem, target, common)
+            if own_time is not None and rival_time is not None:
+                found.append(Duel(rival, own_time, rival_time))
+        return sorted(found, key=lambda duel: -1.0 if math.isnan(duel.ratio) else -duel.ratio)
 
     def lowest(self, problem: str) -> float:
         """The lowest feasible value of any run."""

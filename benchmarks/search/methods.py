@@ -57,7 +57,7 @@ METHODS = {
     "pymoo GA": Method(rivals.pymoo_ga),
     "pymoo ISRES": Method(rivals.pymoo_isres),
     "Optuna TPE": Method(rivals.optuna_tpe),
-    "Optuna GP": Method(rivals.optuna_gp, cost=1),
+    "Optuna GP": Method(rivals.optuna_gp, cost=1, share=0.5),
     "SMT EGO": Method(rivals_learning.smt_ego, cost=2, share=0.5),
     "BoTorch SCBO": Method(rivals_learning.botorch_scbo, cost=1),
 }

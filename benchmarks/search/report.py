@@ -12,7 +12,7 @@ import math
 import statistics
 from pathlib import Path
 
-from benchmarks.search.campaign import Campaign
+from benchmarks.search.campaign import Campaign, Duel
 from benchmarks.search.measures import TARGETS, RunningTime
 from benchmarks.search.traces import RESULTS, kept
 
@@ -41,80 +41,65 @@ def running_times(campaign: Campaign, target: float) -> str:
     return "\n".join(lines)
 
 
-def ratio(ours: RunningTime | None, theirs: RunningTime) -> str:
-    """Our expected evaluations over theirs; nothing where ours has not been run."""
-    if ours is None or not ours.runs:
-        return ""
-    if not theirs.successes:
-        return "they never" if ours.successes else "neither"
-    return f"{ours.expected / theirs.expected:.2f}" if ours.successes else "we never"
+def faced(duel: Duel) -> str:
+    """One ratio with the rival and both expectations behind it."""
+    if math.isnan(duel.ratio):
+        return f"neither ({duel.own_time.runs} seeds)"
+    if not duel.rival_time.successes:
+        return f"no rival ({duel.own_time.expected:.0f}, {duel.own_time.runs} seeds)"
+    number = f"{duel.ratio:.2f}" if math.isfinite(duel.ratio) else "never"
+    behind = f"{said(duel.own_time)} : {said(duel.rival_time)} {duel.rival.name}"
+    return f"{number}: {behind}"
 
 
 def aims(campaign: Campaign, target: float) -> str:
-    """Ours beside the best rival of each problem, chosen afterwards in the rival's favour."""
-    lines = [
-        "| problem | best rival | bayesian | of the rival | best of ours without slopes "
-        "| of the rival | gradient, slopes 0 / 2 | of the rival |",
-        "|---" * 8 + "|",
-    ]
+    """Each of ours beside the rival that is hardest for it on the seeds that both have."""
+    shown = [each for each in campaign.ours if each.method not in ("cma-es", "nelder-mead")]
+    lines = ["| problem | " + " | ".join(each.name for each in shown) + " |"]
+    lines.append("|---" * (1 + len(shown)) + "|")
     for problem in campaign.problems:
-        rival, theirs = campaign.best(problem, target, campaign.rivals)
-        usual = campaign.time(campaign.named("bayesian"), problem, target)
-        own, best = campaign.best(problem, target, campaign.ours_without_slopes)
-        slopes = [campaign.time(each, problem, target) for each in campaign.ours_with_slopes]
-        against = " / ".join(ratio(each, theirs) for each in slopes)
-        lines.append(
-            f"| {problem} | {rival} {said(theirs)} "
-            f"| {said(usual)} | {ratio(usual, theirs)} "
-            f"| {own} {said(best)} | {ratio(best, theirs)} "
-            f"| {' / '.join(said(each) for each in slopes)} | {against} |"
-        )
+        duels = [campaign.duels(each, problem, target) for each in shown]
+        cells = [faced(each[0]) if each else "" for each in duels]
+        lines.append(f"| {problem} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 
 def counts(campaign: Campaign, target: float) -> str:
-    """How often the aims are met, and how often ours are behind."""
-    tally = {"half": 0, "ahead": 0, "tenth": 0, "tenth, slopes counted": 0}
-    usual = {"half": 0, "ahead": 0}
-    for problem in campaign.problems:
-        _, theirs = campaign.best(problem, target, campaign.rivals)
-        _, best = campaign.best(problem, target, campaign.ours_without_slopes)
-        learned = campaign.time(campaign.named("bayesian"), problem, target)
-        plain, full = (campaign.time(each, problem, target) for each in campaign.ours_with_slopes)
-        for time, into in ((best, tally), (learned, usual)):
-            if time is not None and math.isfinite(time.expected):
-                into["half"] += time.expected <= HALF * theirs.expected
-                into["ahead"] += time.expected < theirs.expected
-        for time, name in ((plain, "tenth"), (full, "tenth, slopes counted")):
-            if time is not None and math.isfinite(time.expected):
-                tally[name] += time.expected <= TENTH * theirs.expected
-    total = len(campaign.problems)
-    return (
-        f"To {percent(target)}, of {total} problems: bayesian at most half of the best rival's "
-        f"evaluations on {usual['half']}, fewer on {usual['ahead']}; the best of ours without "
-        f"slopes at most half on {tally['half']}, fewer on {tally['ahead']}; gradient at most a "
-        f"tenth on {tally['tenth']} with slopes free, on {tally['tenth, slopes counted']} with "
-        "slopes at two evaluations."
-    )
+    """On how many problems each of ours stands how to its hardest rival."""
+    lines = [
+        "| ours | problems | at most a tenth | at most half | fewer | more, or never |",
+        "|---" * 6 + "|",
+    ]
+    for entry in campaign.ours:
+        hardest = [
+            duels[0].ratio for p in campaign.problems if (duels := campaign.duels(entry, p, target))
+        ]
+        if not hardest:
+            continue
+        below = [sum(ratio <= limit for ratio in hardest) for limit in (TENTH, HALF)]
+        fewer, more = sum(r < 1 for r in hardest), sum(r > 1 for r in hardest)
+        lines.append(
+            f"| {entry.name} | {len(hardest)} | {below[0]} | {below[1]} | {fewer} | {more} |"
+        )
+    return "\n".join(lines)
 
 
 def lost(campaign: Campaign) -> str:
-    """Every problem and target at which some rival needs fewer evaluations than ours."""
-    lines = []
+    """Every problem and target at which a rival needs fewer evaluations than one of ours."""
+    lines = ["| problem | target | ours | ahead of it |", "|---" * 4 + "|"]
     for problem in campaign.problems:
-        for target in TARGETS:
-            own, best = campaign.best(problem, target, campaign.ours_without_slopes)
-            ahead = [
-                (time.expected, f"{entry.name} {said(time)}")
-                for entry in campaign.rivals
-                if (time := campaign.time(entry, problem, target)) is not None
-                and time.expected < best.expected
-            ]
-            if ahead:
-                names = ", ".join(name for _, name in sorted(ahead))
-                lines.append(f"| {problem} | {percent(target)} | {own} {said(best)} | {names} |")
-    head = "| problem | target | best of ours without slopes | ahead of it |\n|---|---|---|---|\n"
-    return head + "\n".join(lines)
+        for entry in campaign.ours:
+            if entry.method in ("cma-es", "nelder-mead"):
+                continue
+            for target in TARGETS:
+                ahead = [d for d in campaign.duels(entry, problem, target) if d.ratio > 1]
+                names = ", ".join(f"{d.rival.name} {said(d.rival_time)}" for d in ahead)
+                own = said(campaign.time(entry, problem, target))
+                if ahead:
+                    lines.append(
+                        f"| {problem} | {percent(target)} | {entry.name} {own} | {names} |"
+                    )
+    return "\n".join(lines)
 
 
 def thinking(campaign: Campaign) -> str:
