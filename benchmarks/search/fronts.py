@@ -8,8 +8,9 @@ one thread, keeps the same limits drawn in by `SAFETY`, and gets so many times t
 processor time of camring's search. As many designs of its front as camring's has, evenly
 spread, are then looked at as camring's are: at finer resolution, where what breaks a limit
 is left out. The hypervolume of each front
-is its share of one box about all of them. Saved in benchmarks/results/search/fronts.json
-with every design's values; the picture is docs/pictures/search_fronts.
+is its share of one box about all of them. Kept after every seed, in
+benchmarks/results/search/fronts_POINTS.json with every design's values: stopped, it goes
+on where it was. The picture is docs/pictures/search_fronts.
 """
 
 import argparse
@@ -47,20 +48,26 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--times", type=float, nargs="+", default=[0.5, 1.0])
     parser.add_argument("--points", type=int, default=50)
+    parser.add_argument("--out", type=Path, default=RESULTS)
     asked = parser.parse_args()
 
     from camring.interfaces.config import read_motor_file
     from camring.interfaces.trade_off import traded_results
 
     file, names = read_motor_file(asked.motor), traded_results(asked.of)
-    own = ours(file, names, asked.points)
+    kept = asked.out.with_name(f"{asked.out.stem}_{asked.points}.json")
+    fronts = [Found(**each) for each in json.loads(kept.read_text())] if kept.exists() else []
+    if not fronts:
+        fronts = [ours(file, names, asked.points)]
+        keep(fronts, kept)
+    own = fronts[0]
     print(f"camring: {own.seconds:.1f} s of processor time, {len(own.losses)} designs", flush=True)
-    fronts = [own]
-    for seed in range(asked.seeds):
+    for seed in range((len(fronts) - 1) // len(asked.times), asked.seeds):
         times = [each * own.seconds for each in asked.times]
         for found in evolved(file, names, seed, times, asked.points):
             fronts.append(found)
             print(f"{found.name}: {found.evaluations} designs judged", flush=True)
+        keep(fronts, kept)
     shares = volumes([each.losses for each in fronts])
     print("\n| front | processor s | designs judged | in the front | left out | hypervolume |")
     print("|---" * 6 + "|")
@@ -69,13 +76,16 @@ def main() -> None:
             f"| {each.name} | {each.seconds:.1f} | {each.evaluations} | {len(each.losses)} "
             f"| {each.dropped} | {share:.4f} |"
         )
-    RESULTS.parent.mkdir(parents=True, exist_ok=True)
-    rows = [{**vars(each), "volume": v} for each, v in zip(fronts, shares, strict=True)]
-    RESULTS.write_text(json.dumps({"of": names, "fronts": rows}) + "\n")
     try:
-        draw(rows, names, PICTURE)
+        draw(fronts, names, PICTURE)
     except ImportError:
         print('No picture without matplotlib: pip install "camring[plot]" brings it.')
+
+
+def keep(fronts: list[Found], path: Path) -> None:
+    """After every seed, so that a run that was stopped goes on where it was."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps([vars(each) for each in fronts]) + "\n")
 
 
 def ours(file, names, points: int) -> Found:
@@ -202,7 +212,7 @@ def volumes(fronts: list[list[list[float]]]) -> list[float]:
     ]
 
 
-def draw(rows: list[dict], names, path: Path) -> None:
+def draw(fronts: list[Found], names, path: Path) -> None:
     """Writes the picture of two results as SVG and PNG."""
     import matplotlib
     import numpy as np
@@ -212,9 +222,9 @@ def draw(rows: list[dict], names, path: Path) -> None:
 
     figure = Figure(figsize=(7.5, 5))
     axes = figure.subplots()
-    for row in rows:
-        values = np.array(row["losses"]).reshape(-1, 2) * [-SENSES[name] for name in names]
-        own = row["name"] == "camring"
+    for front in fronts:
+        values = np.array(front.losses).reshape(-1, 2) * [-SENSES[name] for name in names]
+        own = front.name == "camring"
         axes.plot(
             *(100 * values[np.argsort(values[:, 0])].T),
             color="#D55E00" if own else "#0072B2",
@@ -223,7 +233,7 @@ def draw(rows: list[dict], names, path: Path) -> None:
             linestyle="-" if own else "none",
             linewidth=1.5,
             zorder=2 if own else 1,
-            label=row["name"],
+            label=front.name,
         )
     axes.set(xlabel=f"{names[0].replace('_', ' ')}, %", ylabel=f"{names[1].replace('_', ' ')}, %")
     axes.legend(fontsize=7, frameon=False)
