@@ -64,9 +64,11 @@ class Duel:
 
     @property
     def ratio(self) -> float:
-        """Our expected evaluations over theirs; 0 where they never get there but we do."""
+        """Our expected evaluations over theirs, which are at least their longest run's."""
         if not self.rival_time.successes:
-            return 0.0 if self.own_time.successes else math.nan
+            if not self.own_time.successes:
+                return math.nan
+            return min(self.own_time.expected / self.rival_time.longest, 1.0)
         return self.own_time.expected / self.rival_time.expected
 
 

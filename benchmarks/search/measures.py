@@ -45,11 +45,14 @@ class RunningTime:
         Evaluations of all runs until the target or their end, over the runs that
         reached it: what independent restarts would need on average. Infinite when none
         did. Auger and Hansen (2005).
+    longest
+        Evaluations of the longest run: where none got there, more than these are needed.
     """
 
     expected: float
     successes: int
     runs: int
+    longest: float = 0.0
 
 
 def running_time(
@@ -62,7 +65,9 @@ def running_time(
         for hit, each in zip(hits, traces, strict=True)
     ]
     successes = sum(map(math.isfinite, hits))
-    return RunningTime(sum(cost) / successes if successes else math.inf, successes, len(traces))
+    expected = sum(cost) / successes if successes else math.inf
+    longest = max((spent(each, slopes_cost) for each in traces), default=0.0)
+    return RunningTime(expected, successes, len(traces), longest)
 
 
 def best_so_far(trace: Trace, length: int) -> Float[np.ndarray, " length"]:

@@ -46,7 +46,8 @@ def faced(duel: Duel) -> str:
     if math.isnan(duel.ratio):
         return f"neither ({duel.own_time.runs} seeds)"
     if not duel.rival_time.successes:
-        return f"no rival ({duel.own_time.expected:.0f}, {duel.own_time.runs} seeds)"
+        longest = f"no rival in {duel.rival_time.longest:.0f}"
+        return f"under {duel.ratio:.2f}: {said(duel.own_time)} : {longest}"
     number = f"{duel.ratio:.2f}" if math.isfinite(duel.ratio) else "never"
     behind = f"{said(duel.own_time)} : {said(duel.rival_time)} {duel.rival.name}"
     return f"{number}: {behind}"

@@ -67,7 +67,7 @@ def test_slopes_asked_for_until_then_count():
 def test_expected_running_time_is_all_that_was_spent_over_successes():
     runs = [trace([2.0, 1.0, 5.0]), trace([3.0, 3.0, 3.0, 3.0])]
     found = running_time(runs, 1.0, 0.0)
-    assert (found.expected, found.successes, found.runs) == (6.0, 1, 2)
+    assert (found.expected, found.successes, found.runs, found.longest) == (6.0, 1, 2, 4)
     assert running_time(runs[1:], 1.0, 0.0).expected == math.inf
 
 
