@@ -124,7 +124,13 @@ def main() -> None:
     for count, value in growth.items():
         print(f"| {count:,} | {value:.3g} |")
     RESULTS.mkdir(exist_ok=True)
-    written = {"seconds": rows, "errors": errors, "slopes": off, "growth": growth, "million": of_million}
+    written = {
+        "seconds": rows,
+        "errors": errors,
+        "slopes": off,
+        "growth": growth,
+        "million": of_million,
+    }
     (RESULTS / "batch_speed.json").write_text(json.dumps(written, indent=1) + "\n")
 
 
