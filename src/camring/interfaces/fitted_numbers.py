@@ -30,6 +30,12 @@ USUAL = (
     "fluid.bulk_modulus",
 )
 """Fitted unless others are named, as far as the motor has them."""
+BELIEVABLE = {
+    "motor.roller.friction": 0.1,
+    "motor.side_friction": 0.3,
+    "motor.valve_plate.discharge_coefficient": 1.0,
+}
+"""What no machine has more of, whatever the key allows; a fit that wants more says so."""
 SMALLEST = 1e-6  # of the scale: where a logarithm ends
 DIGITS = 6
 Point = Float[np.ndarray, " number"]
@@ -71,8 +77,9 @@ class FittedNumber:
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Of the coordinate, from the limits of the key."""
-        low, high = self.entry.low, self.entry.high
+        """Of the coordinate, from the limits of the key and what can be believed."""
+        believable = max(BELIEVABLE.get(self.key, self.entry.high), self.given)
+        low, high = self.entry.low, min(self.entry.high, believable)
         if self.by_logarithm:
             return log(max(low / self.scale, SMALLEST)), log(high / self.scale)
         return low / self.scale, high / self.scale

@@ -21,7 +21,7 @@ from camring.search.multipliers import multipliers
 SHARE = 0.01  # of a variable's range, and of a limit
 RESULTS = ("torque_ripple", "efficiency", "displacement", "max_contact_stress", "max_pressure")
 BINDING = 2e-3  # of its scale; a limit nearer than that binds
-AT_BOUND = 1e-4  # of a variable's range
+AT_BOUND = 2e-3  # of a variable's range; descents stop when J stands still, not quite at a bound
 STATIONARY = 0.1  # of the slope of the objective; below it a design counts as an optimum
 
 

@@ -148,7 +148,9 @@ def solve_periodic(
         frozen, at_stages, mesh, frozen.guess(at_stages), tolerances[0], limit
     )
 
-    for tolerance in tolerances[1:]:
+    def look(current: tuple, tolerance: float | Float[Array, ""]) -> tuple[tuple, None]:
+        """Lays a mesh by what was found on the one before, and solves on it."""
+        mesh, at_stages, stages, _ = current
         node_state, stages = newton_step(frozen, at_stages, mesh, stages)
         powers = element_powers(node_state, stages)
         density = fourth_derivative_density(mesh, powers[3], extent(stages), period)
@@ -157,10 +159,16 @@ def solve_periodic(
         for level in frozen.kinks:
             finer = with_nodes_at(finer, crossings(mesh, powers, level))
         stages = _interpolate(mesh, powers, finer.at(jnp.asarray(STAGES)))
-        mesh = finer
-        at_stages = computed_once(frozen.forcing(mesh, jnp.asarray(STAGES)))
-        stages, iterations = _newton(frozen, at_stages, mesh, stages, tolerance, limit)
+        at_stages = computed_once(frozen.forcing(finer, jnp.asarray(STAGES)))
+        stages, iterations = _newton(frozen, at_stages, finer, stages, tolerance, limit)
+        return (finer, at_stages, stages, iterations), None
 
+    found = (mesh, at_stages, stages, iterations)
+    if resolution.refinements:
+        found, _ = look(found, tolerances[1])
+        # The other meshes have as many elements as this one: they share its program.
+        found, _ = jax.lax.scan(look, found, jnp.asarray(tolerances[2:]))
+    mesh, _, stages, iterations = found
     return settle(equation, breakpoints, period, mesh, stages, iterations)
 
 
@@ -248,7 +256,7 @@ def _newton(
     at_stages: Forcing,
     mesh: Mesh,
     stages: Float[Array, "3 element"],
-    tolerance: float,
+    tolerance: float | Float[Array, ""],
     limit: int,
 ) -> tuple[Float[Array, "3 element"], Int[Array, ""]]:
     def improved(current: Float[Array, "3 element"]) -> Float[Array, "3 element"]:

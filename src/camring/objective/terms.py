@@ -53,7 +53,8 @@ def raw_terms(metrics: Metrics) -> dict[str, Float[Array, ""]]:
     values = (
         metrics.torque_ripple**2,
         metrics.pressure_ripple**2,
-        1 - metrics.efficiency,
+        # A motor that takes shaft power and gives oil is a pump: the worse the more it gives.
+        1 - metrics.efficiency * jnp.sign(metrics.input_power),
         metrics.spectral_pressure,
         metrics.spectral_torque,
         metrics.jerk_objective,
