@@ -32,7 +32,11 @@ class Exported:
 
 
 def export_to_optuna(
-    folder: str | Path, storage: str | BaseStorage, *, name: str | None = None, replace: bool = False
+    folder: str | Path,
+    storage: str | BaseStorage,
+    *,
+    name: str | None = None,
+    replace: bool = False,
 ) -> Exported:
     """Writes every evaluation of a study as a trial into Optuna's storage.
 

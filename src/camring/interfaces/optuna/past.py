@@ -150,4 +150,3 @@ def _constraint_names(trials: Sequence[FrozenTrial]) -> list[str]:
         if trial.state in (TrialState.COMPLETE, TrialState.PRUNED):
             found.update(dict.fromkeys(trial.constraints))
     return list(found)
-

@@ -1,5 +1,6 @@
 """A sampler for Optuna that asks our strategies."""
 
+import contextlib
 import math
 import threading
 import zlib
@@ -76,9 +77,7 @@ class CamringSampler(BaseSampler):
             if name == "budget" and value is None:
                 continue
             if isinstance(value, bool) or not isinstance(value, int) or value < low:
-                raise InputError(
-                    name, f"is {quote(value)}", f"give a whole number from {low} up"
-                )
+                raise InputError(name, f"is {quote(value)}", f"give a whole number from {low} up")
         self._strategy, self._seed = strategy, seed
         self._budget, self._batch = budget, batch
         self._constraints_func = constraints_func
@@ -181,12 +180,13 @@ class CamringSampler(BaseSampler):
 
     def _after_the_end(self, study: Study, stop: Stop, past: Past, box: Box) -> Proposal:
         _logger.info(f"{stop.reason} The study stops after this trial, which looks elsewhere.")
-        try:
+        # Where somebody else's loop asks, that loop decides when to end.
+        with contextlib.suppress(RuntimeError):
             study.stop()
-        except RuntimeError:
-            pass  # somebody else's loop asks, and decides when to end
         place = len(past.history)
-        return Proposal(initial_point(place, box.dimension, self._seed), "after the end", past.memory)
+        return Proposal(
+            initial_point(place, box.dimension, self._seed), "after the end", past.memory
+        )
 
     def _untried(self, box: Box, answer: Proposal, past: Past) -> np.ndarray:
         """The point asked for; where steps make it one of the past, one beside it."""
