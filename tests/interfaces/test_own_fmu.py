@@ -5,11 +5,15 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from zipfile import ZipFile
 
 import numpy as np
 import pytest
+from test_cli import EXAMPLE
+from typer.testing import CliRunner
 
+from camring.interfaces.cli import app
 from camring.interfaces.errors import InputError
 from camring.interfaces.own_command import CommandFailed, OwnCommand
 from camring.interfaces.own_evaluator import NAMES
@@ -76,15 +80,22 @@ def command(folder, mood=0, timeout=60.0, mapping=MAPPING):
     return OwnCommand(words, timeout, str(folder))
 
 
+def asked(command):
+    with TemporaryDirectory() as place:
+        document = {**DOCUMENT, "motor_file": f"{place}/motor.toml"}
+        return command.results(document, NAMES, 2)
+
+
 def reason_of(wrong):
     with pytest.raises(CommandFailed) as caught:
-        wrong.results(DOCUMENT, NAMES, 2)
+        asked(wrong)
     return str(caught.value)
 
 
 def test_its_outputs_are_taken_as_the_file_says(folder):
-    results = command(folder).results(DOCUMENT, NAMES, 2)
-    for each in results:  # whole periods of level 4 and height 0.5, whatever the speed
+    for each in asked(
+        command(folder)
+    ):  # whole periods of level 4 and height 0.5, whatever the speed
         assert each["mean_torque"] == pytest.approx(40.0)
         assert each["torque_ripple"] == pytest.approx(0.5 / 2 / 4.0)
         assert each["max_pressure"] == pytest.approx(4.5)
@@ -140,3 +151,17 @@ def test_whole_periods_are_averaged_exactly_and_transients_left_out():
     for take, exact in (("mean", 3.0), ("rms", math.sqrt(0.5)), ("one-sided rms", 0.5)):
         found = taken_from(time, wave, 1.0, step, {"take": take})
         assert found == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_wrong_file_is_refused_before_a_study_begins(folder, tmp_path):
+    (folder / "wrong.toml").write_text(MAPPING.replace("[results]", "[result]").format(mood=0))
+    out = ["optimise", str(EXAMPLE), "--out", str(tmp_path / "study"), "--fmu"]
+    for path, more, words in (
+        (folder / "wrong.toml", [], 'did you mean "results"'),
+        (folder / "none.toml", [], "cannot be read"),
+        (folder / "wrong.toml", ["--evaluator", "python x.py"], "beside --evaluator"),
+    ):
+        said = CliRunner().invoke(app, [*out, str(path), *more])
+        assert said.exit_code == 2
+        assert words in said.stderr
+    assert not list(tmp_path.iterdir())

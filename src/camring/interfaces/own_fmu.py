@@ -176,12 +176,15 @@ def judged(mapped: Mapped, document: Mapping[str, Any]) -> list[dict[str, float]
                 f"is no variable of {mapped.fmu.name}{_near(name, variables)}",
                 "correct the name",
             )
+    # Unpacked beside the motor file, whose folder is cleared also when this process is killed.
+    folder = str(Path(document["motor_file"]).parent / "fmu")
+    fmpy.extract(str(mapped.fmu), unzipdir=folder)
     found = []
     for point in document["points"]:
         speed = point["shaft_speed"]
         until, step = (seconds(key, getattr(mapped, key), speed) for key in ("until", "step"))
         course = fmpy.simulate_fmu(
-            str(mapped.fmu),
+            folder,
             validate=False,
             stop_time=until,
             step_size=step,
@@ -214,6 +217,18 @@ def _require_known(where: str, table: Mapping[str, Any], keys: Sequence[str]) ->
 def _near(name: str, names: Any) -> str:
     close = get_close_matches(name, list(names), n=1)
     return f" (did you mean {quote(close[0])}?)" if close else ""
+
+
+def command_for(path: str | Path) -> list[str]:
+    """The words of the program that judges by the FMU of a file.
+
+    Raises
+    ------
+    InputError
+        As `Mapped.read`.
+    """
+    Mapped.read(Path(path))
+    return [sys.executable, "-m", __name__, str(Path(path).resolve())]
 
 
 def main(arguments: Sequence[str]) -> int:
