@@ -10,14 +10,17 @@ from zipfile import ZipFile
 
 import numpy as np
 import pytest
+from motor_files import added
 from test_cli import EXAMPLE
 from typer.testing import CliRunner
 
 from camring.interfaces.cli import app
+from camring.interfaces.config import parse_motor_file
 from camring.interfaces.errors import InputError
 from camring.interfaces.own_command import CommandFailed, OwnCommand
 from camring.interfaces.own_evaluator import NAMES
 from camring.interfaces.own_fmu import Mapped, seconds, start_values, taken_from
+from camring.interfaces.study_choices import command_of
 
 pytestmark = pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler")
 
@@ -165,3 +168,11 @@ def test_a_wrong_file_is_refused_before_a_study_begins(folder, tmp_path):
         assert said.exit_code == 2
         assert words in said.stderr
     assert not list(tmp_path.iterdir())
+
+
+def test_it_may_stand_in_the_motor_file(folder):
+    (folder / "map.toml").write_text(MAPPING.format(mood=0))
+    text = added("[evaluator]", 'fmu = "map.toml"\ntimeout = "5 s"')
+    found = command_of(parse_motor_file(text, folder / "motor.toml"), None, None)
+    assert (found.words[-1], found.timeout) == (str(folder / "map.toml"), 5.0)
+    assert asked(found)[0]["mean_torque"] == pytest.approx(40.0)
