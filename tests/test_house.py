@@ -21,7 +21,7 @@ MAY_IMPORT = {room: set(LADDER[: place + 1]) for place, room in enumerate(LADDER
 MAY_IMPORT["search"] = {"search", "numerics"}
 MAY_IMPORT["interfaces"].add("search")
 ONLY_INTERFACES = {"pydantic", "pint", "typer", "click", "rich", "xarray", "h5netcdf", "h5py"}
-ONLY_INTERFACES |= {"ezdxf", "xlsxwriter", "OCP"}
+ONLY_INTERFACES |= {"ezdxf", "xlsxwriter", "OCP", "optuna"}
 ONLY_INTERFACES |= {"matplotlib"}  # and there only in `plots`, loaded when a figure is asked for
 NOBODY = {"torch", "pandas"}
 

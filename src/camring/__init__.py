@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from camring.interfaces import plots
+    from camring.interfaces import optuna, plots
     from camring.interfaces.compiled import (
         evaluate,
         simulate,
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from camring.interfaces.fitting import Fit, fit
     from camring.interfaces.operating_map import operating_map
     from camring.interfaces.optimisation import optimise, resume
+    from camring.interfaces.optuna import export_to_optuna
     from camring.interfaces.own_function import FunctionMinimum, minimise_function
     from camring.interfaces.study import Study, open_study
     from camring.interfaces.sweep import sweep
@@ -59,6 +60,7 @@ _HOMES = {
     "Weights": "camring.objective.terms",
     "Workers": "camring.interfaces.executors",
     "evaluate": "camring.interfaces.compiled",
+    "export_to_optuna": "camring.interfaces.optuna",
     "fit": "camring.interfaces.fitting",
     "minimise_function": "camring.interfaces.own_function",
     "open_study": "camring.interfaces.study",
@@ -92,11 +94,13 @@ __all__ = [
     "Workers",
     "__version__",
     "evaluate",
+    "export_to_optuna",
     "fit",
     "minimise_function",
     "open_study",
     "operating_map",
     "optimise",
+    "optuna",
     "plots",
     "read_motor_file",
     "resume",
@@ -109,8 +113,8 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name == "plots":
-        return import_module("camring.interfaces.plots")
+    if name in ("optuna", "plots"):
+        return import_module(f"camring.interfaces.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'camring' has no attribute {name!r}")
     found = getattr(import_module(_HOMES[name]), name)

@@ -136,6 +136,8 @@ class TestTheTableOfAFile:
         ("lines", "told"),
         [
             ('comand = ["python"]', "you probably meant"),
+            ('timeout = "1 s"', "names neither of command and fmu"),
+            ('fmu = "a.toml"\ncommand = ["a"]', "names both of command and fmu"),
             ("command = []", "evaluator.command has 0 items"),
             ('command = "python"', "must be a list"),
             ("command = [3]", r"evaluator.command\[0\] is 3"),

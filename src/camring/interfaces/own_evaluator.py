@@ -50,7 +50,7 @@ class OwnEvaluator:
         unit_point = point.tolist()
         motor_text = model.file.with_design(unit_point)
         try:
-            given = ask(self.command, motor_text, ours.design, len(ours.results))
+            given = ask(self.command, motor_text, ours.design, model.system_at(point))
         except CommandFailed as error:
             names = model.goal.constraints.names()
             return replace(failed(f"{self.command}: {error}", names), design=ours.design)
@@ -68,14 +68,18 @@ class OwnEvaluator:
         return np.where(sound, np.asarray(found.physical_objective), np.nan)
 
 
-def ask(command: OwnCommand, text: str, design: Mapping[str, Any], places: int) -> Results:
-    """The program's results for the motor of a file.
+def ask(command: OwnCommand, text: str, design: Mapping[str, Any], system: System) -> Results:
+    """The program's results for the motor of a file, which is the system.
 
     Raises
     ------
     CommandFailed
         When it gives none.
     """
+    points = [
+        {each.name: float(getattr(point, each.name)) for each in fields(point)}
+        for point in system.operating_points
+    ]
     with tempfile.TemporaryDirectory(prefix="camring-") as folder:
         path = Path(folder) / FILE_NAME
         path.write_text(text, encoding="utf-8")
@@ -83,16 +87,17 @@ def ask(command: OwnCommand, text: str, design: Mapping[str, Any], places: int) 
             "interface": INTERFACE,
             "motor_file": str(path),
             "design": dict(design),
-            "operating_points": places,
+            "operating_points": len(points),
+            "points": points,
         }
-        return command.results(question, NAMES, places)
+        return command.results(question, NAMES, len(points))
 
 
 def ask_about(command: OwnCommand, motor_file: MotorFile) -> Results:
     """The program's results for a motor file as it stands; see `ask`."""
     space, system = motor_file.design_space, motor_file.system
     design = {} if space is None else space.document_values(system, space.locate(system))
-    return ask(command, motor_file.text, design, len(system.operating_points))
+    return ask(command, motor_file.text, design, system)
 
 
 def overlaid(

@@ -11,6 +11,7 @@ from camring.interfaces.config.evaluator_table import USUAL_TIMEOUT, EvaluatorTa
 from camring.interfaces.config.goal_tables import BAYESIAN, GRADIENT, METHODS
 from camring.interfaces.errors import InputError, quote
 from camring.interfaces.own_command import OwnCommand
+from camring.interfaces.own_fmu import command_for
 
 
 def command_of(
@@ -38,7 +39,8 @@ def command_of(
     else:
         assert table is not None
         folder = Path(motor_file.path).resolve().parent
-        command = OwnCommand(tuple(table.command), patience, str(folder))
+        words = command_for(folder / table.fmu) if table.fmu else table.command or []
+        command = OwnCommand(tuple(words), patience, str(folder))
     command.require_runnable()
     return command
 

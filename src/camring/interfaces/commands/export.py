@@ -5,12 +5,16 @@ from typing import Annotated
 
 import typer
 
+from camring.interfaces.errors import InputError
+
 
 def export(
     motor: Annotated[
         Path, typer.Argument(help="Motor file, or folder of a study: its best motor is taken.")
     ],
-    out: Annotated[Path, typer.Option("--out", help="Folder for the files; made if need be.")],
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder for the files; made if need be.")
+    ] = None,
     only: Annotated[
         str | None,
         typer.Option(
@@ -54,8 +58,19 @@ def export(
     points: Annotated[
         str | None, typer.Option(help="Its speeds and pressures, a sign of each; else 13x7.")
     ] = None,
+    optuna: Annotated[
+        str | None,
+        typer.Option(
+            metavar="URL",
+            help="Every evaluation of a study as a trial in Optuna's storage, such as "
+            "sqlite:///study.db (docs/guide/optuna.md); instead of files.",
+        ),
+    ] = None,
+    name: Annotated[
+        str | None, typer.Option(help="Of the study in Optuna's storage; else the folder's.")
+    ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Replace files of the same names.")
+        bool, typer.Option("--force", help="Replace files, or Optuna's study, of the same names.")
     ] = False,
     json: Annotated[
         bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
@@ -69,6 +84,16 @@ def export(
     drawing; ring.step a solid. An undercut ring is refused. NAME.fmu (--fmu) is
     the motor for Simulink, Amesim and others, NAME.mo for Modelica.
     """
+    if optuna is not None:
+        if out is not None:
+            raise InputError("--optuna", "writes no files", "leave --out away, or run export twice")
+        _to_optuna(motor, optuna, name, force, json)
+        return
+    if out is None:
+        raise InputError("--out", "is missing", "name a folder for the files")
+    if name is not None:
+        raise InputError("--name", "has no effect without --optuna", "leave it away")
+
     from camring.interfaces.compilation_cache import keep_compiled_programs
 
     keep_compiled_programs()
@@ -91,3 +116,20 @@ def export(
         typer.echo(document(file, written))
     else:
         print_written(file, written)
+
+
+def _to_optuna(folder: Path, storage: str, name: str | None, force: bool, json: bool) -> None:
+    from dataclasses import asdict
+    from json import dumps
+
+    import camring
+
+    written = camring.export_to_optuna(folder, storage, name=name, replace=force)
+    if json:
+        typer.echo(dumps({"storage": storage, **asdict(written)}))
+        return
+    best = "none keeps every limit" if written.best is None else f"the best is {written.best}"
+    typer.echo(
+        f"{written.trials} trials are in {storage} as the study {written.name}; {best}.\n"
+        f"optuna-dashboard {storage} shows them."
+    )

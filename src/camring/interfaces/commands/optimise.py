@@ -46,6 +46,14 @@ def optimise(
             "and writes JSON (docs/guide/expensive-models.md)."
         ),
     ] = None,
+    fmu: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Your own FMU that judges designs: a TOML file that maps its variables "
+            "(docs/guide/expensive-models.md).",
+        ),
+    ] = None,
     timeout: Annotated[
         str | None,
         typer.Option(help="When to stop it, such as '5 min'; else that of the file, or 600 s."),
@@ -81,6 +89,15 @@ def optimise(
     from camring.interfaces.optimisation import optimise
     from camring.interfaces.progress import SearchProgress
 
+    command: str | list[str] | None = evaluator
+    if fmu is not None:
+        from camring.interfaces.errors import InputError
+        from camring.interfaces.own_fmu import command_for
+
+        if evaluator is not None:
+            raise InputError("--fmu", "is given beside --evaluator", "leave one of them away")
+        command = command_for(fmu)
+
     with chosen_executor(workers, dask) as executor:
         finished = optimise(
             motor,
@@ -89,7 +106,7 @@ def optimise(
             seed=seed,
             method=method and method.value,
             theory=theory,
-            evaluator=evaluator,
+            evaluator=command,
             timeout=timeout,
             executor=executor,
             batch=batch,

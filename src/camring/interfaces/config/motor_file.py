@@ -122,10 +122,12 @@ def parse_motor_file(text: str, path: Path = Path("motor.toml")) -> MotorFile:
             raise InputError(
                 f"[{name}]", "has no effect without [design_space]", "add one or leave it"
             )
+    if tables.evaluator is not None:
+        tables.evaluator.require_one()
     if tables.evaluator is not None and document.get("search", {}).get("method") == GRADIENT:
         raise InputError(
             "search.method",
-            'is "gradient", which needs slopes that the command of [evaluator] does not give',
+            'is "gradient", which needs slopes that [evaluator] does not give',
             'leave it out, or write method = "bayesian"',
         )
     return MotorFile(
