@@ -138,7 +138,9 @@ def _line(path: str, row: Row, said: tuple[str, str], values: list[Any]) -> str:
         meaning += f", as `{entry.example}`"
     if row.law:
         meaning += f". With `{row.law}`"
-    default = "**needed**" if row.needed else "" if row.default in (None, "") else f"`{row.default}`"
+    default = (
+        "**needed**" if row.needed else "" if row.default in (None, "") else f"`{row.default}`"
+    )
     cells = [f"`{path.rpartition('.')[2]}`", meaning, default, span, source]
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
