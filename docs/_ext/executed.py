@@ -1,0 +1,100 @@
+"""The directive `run`: commands and Python of a tutorial run at build and shown with what they say.
+
+`{run} sh` runs one command a line; `{run} python` runs in one namespace a page, or with
+`:script: NAME` as a program of its own; `:picture: FILE WORDS` shows a picture that was made,
+`:last: N` only the last lines printed. What fails is an error of the build. All pages share one
+folder, so a study made by one page is there for the next; when one is stale all are run again.
+"""
+
+import contextlib
+import io
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.util.docutils import SphinxDirective
+
+SPACES: dict[str, dict] = {}  # of Python names, by page
+
+
+class Run(SphinxDirective):
+    has_content, required_arguments = True, 1
+    option_spec = dict.fromkeys(("picture", "script", "last"), directives.unchanged)
+
+    def run(self):
+        room = _room(self.env)
+        self.env.metadata[self.env.docname]["executed"] = "yes"
+        source, script = "\n".join(self.content), self.options.get("script")
+        if self.arguments[0] == "sh":
+            shown = [_block("console", "\n".join(self.shell(line, room) for line in self.content))]
+        elif script:
+            (room / script).write_text(source + "\n", encoding="utf-8")
+            said = self.shell(f"python {script}", room)
+            shown = [_block("python", source), _block("console", said)]
+        else:
+            shown = [_block("python", source)]
+            if said := self.python(source, room):
+                shown.append(_block("text", said))
+        if "picture" in self.options:
+            name, _, words = self.options["picture"].partition(" ")
+            if not (room / name).exists():
+                raise self.error(f"no picture {name} was made")
+            inside = os.path.relpath(room / name, self.env.srcdir)
+            shown.append(nodes.image(uri=f"/{inside}", alt=words))
+        return shown
+
+    def shell(self, line: str, room: Path) -> str:
+        paths = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+        place = {"PATH": paths, "COLUMNS": "96", "NO_COLOR": "1", "MPLBACKEND": "agg"}
+        done = subprocess.run(
+            line, shell=True, cwd=room, env=os.environ | place, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        )  # fmt: skip
+        if done.returncode:
+            raise self.error(f"`{line}` ended with {done.returncode}:\n{done.stdout}")
+        return f"$ {line}\n{self.cut(done.stdout.replace(f'{room}/', ''))}"
+
+    def python(self, source: str, room: Path) -> str:
+        from camring.interfaces.compilation_cache import keep_compiled_programs
+
+        keep_compiled_programs()
+        with contextlib.chdir(room), contextlib.redirect_stdout(io.StringIO()) as said:
+            try:
+                exec(source, SPACES.setdefault(self.env.docname, {}))
+            except Exception as error:
+                raise self.error(f"Python failed: {type(error).__name__}: {error}") from error
+        return self.cut(said.getvalue())
+
+    def cut(self, said: str) -> str:
+        lines = [line.rstrip() for line in said.rstrip().splitlines()]
+        return "\n".join(lines[-int(self.options.get("last", 0)) :])
+
+
+def _block(language: str, text: str) -> nodes.Node:
+    return nodes.literal_block(text, text, language=language)
+
+
+def _room(env) -> Path:
+    room = Path(env.app.doctreedir) / "executed"
+    room.mkdir(parents=True, exist_ok=True)
+    return room
+
+
+def _all_or_none(app, env, added, changed, removed):
+    pages = {page for page, said in env.metadata.items() if "executed" in said}
+    stale = added | changed
+    if pages and not pages & stale:
+        return []
+    shutil.rmtree(_room(env), ignore_errors=True)
+    SPACES.clear()
+    return sorted(pages)
+
+
+def setup(app):
+    app.add_directive("run", Run)
+    app.connect("env-get-outdated", _all_or_none)
+    return {"parallel_read_safe": False}
