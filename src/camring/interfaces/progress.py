@@ -28,6 +28,7 @@ class SearchProgress:
         self._best = best_of(kept)
         self._done = len(kept)
         self._feasible = sum(record.feasible for record in kept)
+        self._any_failed = any(record.failed for record in kept)
         self._budget = budget
         self._last_line = time.monotonic()
         self._phase = "starting"
@@ -59,6 +60,9 @@ class SearchProgress:
         self._done += 1
         self._feasible += record.feasible
         self._phase = record.phase
+        if record.failed and not self._any_failed:
+            self._any_failed = True
+            self.say(f"Evaluation {record.trial} failed: {record.outcome.failure}.")
         if record.feasible:
             self._best = best_of([*([self._best] if self._best else []), record])
         self._bar.update(
