@@ -106,8 +106,8 @@ class Original:
         """
         if layout.phases < rules.LEAST_PHASES:
             raise Unbuildable(
-                f"has {layout.phases} distinct piston phase{'s' * (layout.phases > 1)}, below "
-                f"the {rules.LEAST_PHASES} without which it stands still at a dead centre"
+                f"has {layout.phases} distinct piston phase{'s' * (layout.phases > 1)}, fewer "
+                f"than the {rules.LEAST_PHASES} that a motor needs to start from any angle"
             )
         if layout == self.layout:
             return self.file.text

@@ -60,14 +60,16 @@ def csv_text(found: Studies) -> str:
     rows.writerow(["", "", "", "1/rev", "", "", "", *units, "", "", ""])
     for rank, each in enumerate(found.ranked, 1):
         best = each.best
-        values = [worst(each, name) * quantity(name).factor for name in WORST] if best else None
+        values: list[Any] = [""] * len(WORST)
+        if best:
+            values = [worst(each, name) * quantity(name).factor for name in WORST]
         rows.writerow(
             [
                 rank if best else "",
                 *_counts(each),
                 best.outcome.objective if best else "",
                 each.given.outcome.objective,
-                *(values or [""] * len(WORST)),
+                *values,
                 each.evaluations,
                 "yes" if each.validated else "no",
                 each.sentence,

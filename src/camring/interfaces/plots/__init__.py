@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         sweep_curves,
     )
     from camring.interfaces.plots.histograms import robust_comparison, scatter_histograms
+    from camring.interfaces.plots.layouts import layouts_ranked
     from camring.interfaces.plots.ring import cam
     from camring.interfaces.plots.style import save
 
