@@ -26,6 +26,15 @@ WORST = {
 }
 """Results in the ranking, each at the operating point where it is worst."""
 
+SHORT = {
+    "torque_ripple": "ripple",
+    "efficiency": "efficiency",
+    "max_contact_stress": "stress",
+    "max_pressure_angle": "angle",
+    "stroke": "stroke",
+}
+"""What the table on a terminal calls them."""
+
 
 def worst(each: Studied, name: str) -> float:
     """A result of the best design at its worst operating point, SI."""
@@ -142,25 +151,23 @@ def document(found: Studies) -> dict[str, Any]:
 
 def _table(found: Studies) -> Table:
     table = Table(box=None, pad_edge=False)
-    for name in ("", "layout", "J", "J before"):
+    for name in ("", "layout", "J"):
         table.add_column(name, justify="left" if name == "layout" else "right")
-    for name in WORST:
-        shown = quantity(name)
-        table.add_column(f"{shown.label} {shown.unit}".strip(), justify="right")
-    for name in ("order", "radial load", "validated"):
+    for name, short in SHORT.items():
+        table.add_column(f"{short}\n{quantity(name).unit}", justify="right")
+    for name in ("order\n1/rev", "radial\nload", "valid"):
         table.add_column(name, justify="right")
     for rank, each in enumerate(found.ranked, 1):
         words = f"{each.layout}{' (given)' * (each.layout == found.own)}"
         values = (
-            [quantity(name).written(worst(each, name)) for name in WORST]
+            [quantity(name).written(worst(each, name)) for name in SHORT]
             if each.best
-            else ["–"] * len(WORST)
+            else ["–"] * len(SHORT)
         )
         table.add_row(
             f"{rank}" if each.best else "",
             words,
             f"{each.best.outcome.objective:.4g}" if each.best else "–",
-            f"{each.given.outcome.objective:.4g}",
             *values,
             f"{each.layout.surviving_order}",
             "balanced" if each.layout.balanced else "turning",
