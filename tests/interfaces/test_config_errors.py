@@ -146,6 +146,16 @@ FAULTS = {
         with_line('supply_pressure = "10 bar"'),
         ["operating_points[0].supply_pressure", "not above the return pressure"],
     ),
+    "misspelt direction": (
+        SOUND.replace("weight = 0.6", 'rotation = "revers"'),
+        ["operating_points[0].rotation", "did you mean 'reverse'"],
+    ),
+    "a notch backwards": (
+        added("[motor.valve_plate]", 'notch_angle = "0.5 deg"\nnotch_area = 0.03').replace(
+            "weight = 0.4", 'weight = 0.4\nrotation = "reverse"'
+        ),
+        ["operating_points[1].rotation", "opening edge", "leave motor.valve_plate.notch_angle"],
+    ),
     "no weight": (
         SOUND.replace("weight = 0.6", "weight = 0").replace("weight = 0.4", "weight = 0"),
         ["operating_points[0].weight"],

@@ -29,6 +29,7 @@ COMMANDS = (
     "sweep",
     "compare",
     "optimise",
+    "layouts",
     "pareto",
     "sensitivities",
     "tolerance",

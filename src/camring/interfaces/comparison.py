@@ -16,6 +16,7 @@ from camring.interfaces.database import DATABASE_NAME
 from camring.interfaces.errors import InputError, quote
 from camring.interfaces.simulated import Simulated, simulated
 from camring.interfaces.study_folder import BEST_NAME
+from camring.physics.operating_point import OperatingPoint
 
 FEWEST, MOST = 2, 8
 SAME = 1e-9  # relative; below it two inputs are one
@@ -121,10 +122,22 @@ def _at_points_of_first(files: list[MotorFile]) -> tuple[list[MotorFile], bool]:
     moved, changed = [], False
     for file in files:
         own = file.system.operating_points
+        _require_both_ways(file, first)
         changed |= not bool(eqx.tree_equal(own, first, rtol=SAME))
         system = eqx.tree_at(lambda each: each.operating_points, file.system, first)
         moved.append(replace(file, system=system))
     return moved, changed
+
+
+def _require_both_ways(file: MotorFile, points: tuple[OperatingPoint, ...]) -> None:
+    notched = file.system.motor.valve_plate.notch is not None
+    if notched and any(point.reverse for point in points):
+        raise InputError(
+            printable(file.path),
+            "has relief notches, which lie at the opening edges one way round only, but the "
+            "first motor turns backwards at an operating point",
+            "name another motor first, or compare with --own-points",
+        )
 
 
 def _labels(places: list[Path]) -> list[str]:

@@ -65,7 +65,7 @@ def _duty(found: Comparison, place: int) -> str:
     points = [each.simulated.file.system.operating_points[place] for each in found.motors]
     told = [
         f"{30 / pi * float(point.shaft_speed):.4g} rpm, "
-        f"{float(point.supply_pressure) / 1e5:.4g} bar"
+        f"{float(point.supply_pressure) / 1e5:.4g} bar{', reverse' * point.reverse}"
         for point in points
     ]
     same = len(set(told)) == 1

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
@@ -33,13 +34,27 @@ from camring.physics.fluid import AbstractFluid
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.resolution import Resolution
+from camring.physics.rotation import turned
 from camring.physics.system import System
 
 # The short names are those under which `import camring` offers them.
-simulate = simulate_compiled = eqx.filter_jit(cycle.simulate)
+_simulate = eqx.filter_jit(cycle.simulate)
 summarise = summarise_compiled = eqx.filter_jit(summary.summarise)
 waveforms = eqx.filter_jit(sampling.waveforms)
 _judge = eqx.filter_jit(judge)
+
+
+def simulate(
+    motor: Motor,
+    fluid: AbstractFluid,
+    point: OperatingPoint,
+    resolution: Resolution | None = None,
+) -> Cycle:
+    """`camring.physics.cycle.simulate`, compiled: one program for both directions."""
+    return _simulate(turned(motor, point), fluid, point, resolution)
+
+
+simulate_compiled = simulate
 
 
 def cycles(system: System, resolution: Resolution | None = None) -> tuple[Cycle, ...]:
@@ -143,8 +158,16 @@ def slopes_with_results(
     along = _directions(space, given, unit_point)
     names = tuple(dict.fromkeys([*results_used(goal), *results]))
     of_results = [
-        _result_slopes(each, Operated(along.motor, along.fluid, point), names, goal.harmonics)
+        _result_slopes(each, _operated(along, point), names, goal.harmonics)
         for each, point in zip(design.cycles, along.operating_points, strict=True)
     ]
     used = [{name: found[name] for name in results_used(goal)} for found in of_results]
     return _judged_slopes(design.system, goal, design.metrics, along, used), of_results
+
+
+def _operated(along: System, point: OperatingPoint) -> Operated:
+    """Directions of change as an operating point turns the motor."""
+    motor = (
+        jax.vmap(lambda each: turned(each, point))(along.motor) if point.reverse else along.motor
+    )
+    return Operated(motor, along.fluid, point)

@@ -103,7 +103,8 @@ def show(finished: Finished, *, as_json: bool) -> int:
 def _results(finished: Finished, place: int) -> Table:
     point = finished.given_file.system.operating_points[place]
     speed, pressure = float(point.shaft_speed) * 9.549296585513721, float(point.supply_pressure)
-    table = Table(title=f"{speed:.4g} rpm, {pressure / 1e5:.4g} bar", title_justify="left")
+    title = f"{speed:.4g} rpm, {pressure / 1e5:.4g} bar{', reverse' * point.reverse}"
+    table = Table(title=title, title_justify="left")
     table.add_column("")
     for name in ("given", "best", "change"):
         table.add_column(name, justify="right")

@@ -76,6 +76,7 @@ def operating_map(
         return_pressure=repeated(point.return_pressure, count),
         case_pressure=repeated(point.case_pressure, count),
         weight=repeated(point.weight, count),
+        reverse=point.reverse,
     )
     found = results_of_many(
         repeated(system.motor, count),
@@ -118,7 +119,7 @@ def described(file: MotorFile, number: int, without: set[str]) -> str:
         ("operating_points.case_pressure", f"case {float(point.case_pressure) / BAR:.4g} bar"),
     ]
     own = {key.replace(f"[{number - 1}]", "") for key in without}
-    kept = ", ".join(text for key, text in held if key not in own)
+    kept = ", ".join(text for key, text in held if key not in own) + ", reverse" * point.reverse
     return f"{file.system.motor.name or file.path.stem}\n{kept}"
 
 

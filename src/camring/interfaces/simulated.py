@@ -23,6 +23,7 @@ from camring.metrics.summary import Metrics
 from camring.metrics.timing import Timing, port_timing
 from camring.physics.cycle import Cycle
 from camring.physics.resolution import Resolution
+from camring.physics.rotation import turned
 
 ACCURACY = 1e-5
 
@@ -149,10 +150,9 @@ def timing_of(file: MotorFile) -> Timing:
     """Port timing at the first operating point, in plain numbers."""
     import jax
 
-    system = file.system
-    return jax.device_get(
-        jax.jit(port_timing)(system.motor, system.fluid, system.operating_points[0])
-    )
+    system, point = file.system, file.system.operating_points[0]
+    motor = turned(system.motor, point)
+    return jax.device_get(jax.jit(port_timing)(motor, system.fluid, point))
 
 
 def _gaps(timing: Timing) -> tuple[float, float]:

@@ -64,7 +64,8 @@ def _results(found: Simulated) -> Table:
     for point in found.file.system.operating_points:
         speed = float(point.shaft_speed) * 30 / pi
         supply = float(point.supply_pressure) / 1e5
-        table.add_column(f"{speed:.4g} rpm\n{supply:.4g} bar", justify="right")
+        way = "\nreverse" * point.reverse
+        table.add_column(f"{speed:.4g} rpm\n{supply:.4g} bar{way}", justify="right")
     for name, quantities in GROUPS:
         table.add_row(f"[bold]{name}[/bold]")
         for quantity in quantities:

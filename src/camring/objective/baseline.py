@@ -22,6 +22,7 @@ from camring.physics.cycle import reference_radius
 from camring.physics.force import radial_force
 from camring.physics.linearised import linear_chamber
 from camring.physics.operating_point import OperatingPoint
+from camring.physics.rotation import turned
 from camring.physics.system import System
 from camring.physics.torque import torque_by_virtual_work
 
@@ -53,7 +54,7 @@ def approximate(system: System, goal: Goal) -> Float[Array, ""]:
 
 
 def _terms(system: System, point: OperatingPoint, goal: Goal) -> dict[str, Float[Array, ""]]:
-    motor, fluid = system.motor, system.fluid
+    motor, fluid = turned(system.motor, point), system.fluid
     speed, drop, area = point.shaft_speed, point.pressure_drop, motor.piston.area
     count = SAMPLES_PER_PITCH * (motor.lobes // motor.cam.repeats)
     angle = motor.cam.period * jnp.arange(count) / count

@@ -29,6 +29,7 @@ from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.pressure import exchange_rate, kinks, state_rate
 from camring.physics.resolution import Resolution
+from camring.physics.rotation import turned
 
 CONVERGED_RESIDUAL = 1e-7
 SHUT = 1e-3  # share of a port's area below which a first guess takes it for closed
@@ -39,6 +40,7 @@ class Cycle(eqx.Module):
     """The periodic solution with the system it belongs to."""
 
     motor: Motor
+    """As it is turned: seen from behind at an operating point that turns backwards."""
     fluid: AbstractFluid
     point: OperatingPoint
     reference_radius: Q[Float[Array, ""], "m"]
@@ -106,6 +108,7 @@ def simulate(
     `cycle.verdict`; nothing is raised.
     """
     resolution = resolution or Resolution()
+    motor = turned(motor, point)
     reference = reference_radius(motor)
     breakpoints = motor.breakpoints()
     pitches = motor.lobes // motor.cam.repeats
@@ -135,6 +138,7 @@ def neighbour(cycle: Cycle, motor: Motor, fluid: AbstractFluid, point: Operating
     At the cycle's own motor it is that cycle, with all its derivatives: the way to
     gradients that do not pay for solving once more.
     """
+    motor = turned(motor, point)
     reference, breakpoints = reference_radius(motor), motor.breakpoints()
     if cycle.gallery is None:
         orbit = settle(

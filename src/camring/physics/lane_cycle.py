@@ -30,6 +30,7 @@ from camring.physics.cycle import Cycle, quasi_steady, rate_in_state
 from camring.physics.fluid import AbstractFluid
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
+from camring.physics.rotation import turned
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ def simulate_lanes(
     """
     # What later steps share is computed once: without the barriers the compiler would
     # write it into every loop that reads it.
-    motor, fluid, point = computed_once((motor, fluid, point))
+    motor, fluid, point = computed_once((turned(motor, point), fluid, point))
     cam = computed_once(round_the_cam(radial(motor)))
     reference = computed_once(reference_radii(motor, cam))
     breakpoints, sharp, own = _breakpoints(motor, look.knots)
@@ -115,6 +116,7 @@ def neighbour_lanes(
     known: Cycle, motor: Motor, fluid: AbstractFluid, point: OperatingPoint, look: LanesLook
 ) -> LaneCycle:
     """Cycles of motors very near to those of cycles at hand; see `cycle.neighbour`."""
+    motor = turned(motor, point)
     cam = round_the_cam(radial(motor))
     reference = reference_radii(motor, cam)
     breakpoints, _, _ = _breakpoints(motor, look.knots)

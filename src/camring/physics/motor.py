@@ -53,6 +53,8 @@ class Motor(eqx.Module):
     pistons: int = eqx.field(static=True, kw_only=True)
     lobes: int = eqx.field(static=True, kw_only=True)
     name: str = eqx.field(static=True, default="", kw_only=True)
+    from_behind: bool = eqx.field(static=True, default=False, kw_only=True)
+    """Seen from the other end of the shaft, its ports exchanged; see `rotation.turned`."""
 
     @property
     def distinct_phases(self) -> int:

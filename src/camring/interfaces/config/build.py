@@ -138,4 +138,5 @@ def _operating_point(point: OperatingPointTable) -> OperatingPoint:
         return_pressure=real(point.return_pressure),
         case_pressure=real(case),
         weight=real(point.weight),
+        reverse=point.rotation == "reverse",
     )

@@ -34,6 +34,7 @@ def require_sound(tables: FileTables, document: dict[str, Any]) -> None:
     require_sound_laws(tables, document)
     _require_volume(motor, given, _pitch_radius(motor, given["cam"]))
     _require_drop(tables, document["operating_points"])
+    _require_no_notch_backwards(tables)
     _require_an_aim(tables.objective)
     _require_room_between(tables.constraints)
 
@@ -141,6 +142,20 @@ def _require_drop(tables: FileTables, given: list[dict[str, Any]]) -> None:
             "is zero, like that of every operating point",
             "give one a weight above zero",
         )
+
+
+def _require_no_notch_backwards(tables: FileTables) -> None:
+    if tables.motor.valve_plate.notch_angle is None:
+        return
+    for place, point in enumerate(tables.operating_points):
+        if point.rotation == "reverse":
+            raise InputError(
+                f"operating_points[{place}].rotation",
+                'is "reverse", but a relief notch lies at the opening edge of its window, and '
+                "backwards that edge closes, which the model does not have",
+                "leave motor.valve_plate.notch_angle and notch_area out, or let the motor turn "
+                "forwards only",
+            )
 
 
 def _require_an_aim(objective: ObjectiveTable) -> None:

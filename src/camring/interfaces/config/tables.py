@@ -294,6 +294,14 @@ class OperatingPointTable(Table):
         pressure_entry("the absolute case pressure (unless given, the return pressure)", '"2 bar"'),
     ] = None
     weight: Key[float, Number("the weight of this point in the objective", "1", high=1e6)] = 1.0
+    rotation: Key[
+        str,
+        Word(
+            "which way the shaft turns; backwards the ports are exchanged",
+            '"forward"',
+            words=("forward", "reverse"),
+        ),
+    ] = "forward"
 
 
 class FileTables(Table):

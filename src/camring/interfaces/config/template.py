@@ -90,7 +90,8 @@ vapour_pressure = "3 kPa"
 # oil = "ISO VG 46"                           # stands for the values that are not given ...
 # temperature = "50 degC"                     # ... at this temperature
 
-# As many as the motor has duties; their weights make one objective of them.
+# As many as the motor has duties; their weights make one objective of them. With
+# rotation = "reverse" a valve exchanges the ports and the motor turns backwards.
 [[operating_points]]
 speed = "300 rpm"
 supply_pressure = "250 bar"

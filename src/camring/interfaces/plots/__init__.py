@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         sweep_curves,
     )
     from camring.interfaces.plots.histograms import robust_comparison, scatter_histograms
+    from camring.interfaces.plots.layouts import layouts_ranked
     from camring.interfaces.plots.ring import cam
     from camring.interfaces.plots.style import save
 
@@ -32,6 +33,7 @@ _HOMES = {
     "efficiency_map": "grids",
     "fitted": "fits",
     "front": "fronts",
+    "layouts_ranked": "layouts",
     "pressure_volume": "curves",
     "result_map": "grids",
     "ripple_map": "grids",
@@ -49,6 +51,7 @@ __all__ = [
     "efficiency_map",
     "fitted",
     "front",
+    "layouts_ranked",
     "pressure_volume",
     "require_matplotlib",
     "result_map",

@@ -167,7 +167,7 @@ def _names(cycles: Sequence["Cycle"], labels: Sequence[str]) -> list[str]:
     if len(set(names)) < len(names):
         duties = [
             f"{30 / pi * float(c.point.shaft_speed):.4g} rpm, "
-            f"{float(c.point.supply_pressure) / 1e5:.4g} bar"
+            f"{float(c.point.supply_pressure) / 1e5:.4g} bar{', reverse' * c.point.reverse}"
             for c in cycles
         ]
         names = (

@@ -39,6 +39,7 @@ class Duty:
     return_pressure: float  # Pa
     case_pressure: float  # Pa
     weight: float = 1.0
+    reverse: bool = False
 
     @property
     def pressure_drop(self) -> float:
@@ -46,9 +47,10 @@ class Duty:
 
     @property
     def name(self) -> str:
-        """Short name in shop-floor units, such as "300 rpm, 250 bar"."""
+        """Short name in shop-floor units, such as "300 rpm, 250 bar, reverse"."""
         speed = self.shaft_speed * 30 / np.pi
-        return f"{speed:.4g} rpm, {self.supply_pressure / 1e5:.4g} bar"
+        pressure = self.supply_pressure / 1e5
+        return f"{speed:.4g} rpm, {pressure:.4g} bar{', reverse' * self.reverse}"
 
 
 @dataclass(frozen=True)

@@ -131,4 +131,5 @@ def _duty(point: OperatingPoint) -> Duty:
         float(point.return_pressure),
         float(point.case_pressure),
         float(point.weight),
+        point.reverse,
     )

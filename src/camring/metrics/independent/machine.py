@@ -167,6 +167,33 @@ def _manifold(manifold: Any) -> Manifold | None:
     return Manifold(number(manifold.volume), number(manifold.line_conductance))
 
 
+def _from_behind(machine: Machine) -> Machine:
+    """A machine that turns backwards with its ports exchanged, seen from its other end.
+
+    Worked out here once more, in plain numbers: nothing of `camring.physics.mirror`.
+    """
+    places = -np.arange(len(machine.control)) % len(machine.control)
+    control = machine.control[places]
+    if np.iscomplexobj(control):
+        # Below the line of angle 0 the last points of the period before come first.
+        before = np.where(places > 0, np.exp(-1j * machine.period), 1)
+        control = np.conj(control * before)
+
+    def behind(window: Window) -> Window:
+        if window.notch_area:
+            raise NotImplementedError("the independent solver has no trailing notch")
+        places, shares = window.table
+        table = (tuple(-each for each in reversed(places)), tuple(reversed(shares)))
+        return replace(window, centre=-window.centre, table=table)
+
+    return replace(
+        machine,
+        control=control,
+        supply=behind(machine.return_),
+        return_=behind(machine.supply),
+    )
+
+
 def machine_of(motor: Any, fluid: Any, point: Any) -> Machine:
     """Read the nouns of `camring.physics` into plain numbers."""
     cam, plate = motor.cam, motor.valve_plate
@@ -212,6 +239,8 @@ def machine_of(motor: Any, fluid: Any, point: Any) -> Machine:
         side_friction=number(getattr(motor.friction, "side", 0.0)),
         manifold=_manifold(getattr(motor, "manifold", None)),
     )
+    if getattr(point, "reverse", False) != getattr(motor, "from_behind", False):
+        machine = _from_behind(machine)
     gap = getattr(motor, "gap", None)
     if gap is None:
         return machine

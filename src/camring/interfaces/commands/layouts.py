@@ -1,0 +1,54 @@
+"""`camring layouts`: which number of pistons on which number of lobes is best."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def layouts(
+    motor: Annotated[Path, typer.Argument(help="Motor file with a [design_space].")],
+    pistons: Annotated[str, typer.Option("--pistons", help="Counts, such as 5,7,8 or 5..9.")],
+    lobes: Annotated[str, typer.Option("--lobes", help="Counts, such as 4,6.")],
+    out: Annotated[
+        Path, typer.Option("--out", help="Folder to make, or one to go on with after a stop.")
+    ],
+    budget: Annotated[
+        int | None,
+        typer.Option(min=1, help="Model evaluations of each layout; else that of the file."),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(min=0, help="Where all chance comes from; else that of the file, or 0."),
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="One document on stdout, all else on stderr.")
+    ] = False,
+) -> None:
+    """Optimise one motor of every layout, pistons by lobes, and rank them.
+
+    Each keeps the given motor's displacement, outer radius, pistons, rollers, duties and
+    limits; the stroke follows. Each is a study of its own in the folder, which
+    `camring report` and `camring compare` understand. Stopped, the same command goes on.
+    """
+    from camring.interfaces.layouts.layout import layouts_of
+
+    wanted = layouts_of(pistons, lobes)
+
+    from camring.interfaces.layouts.ranking import show, write
+    from camring.interfaces.layouts.study import layouts
+    from camring.interfaces.plots import require_matplotlib
+    from camring.interfaces.progress import SearchProgress
+
+    require_matplotlib()
+    found = layouts(
+        motor,
+        out,
+        wanted,
+        budget=budget,
+        seed=seed,
+        watch=SearchProgress,
+        say=lambda sentence: typer.echo(sentence, err=True),
+    )
+    write(found)
+    raise typer.Exit(show(found, as_json=json))
