@@ -48,13 +48,18 @@ def _results(found: Comparison, place: int) -> Table:
     table.add_column("")
     for each in found.motors:
         table.add_column(escape(each.label), justify="right", overflow="fold")
+    results = [each.simulated.outcome.results[place] for each in found.motors]
+    all_drive = all(each["output_power"] > 0 for each in results)
     for name, quantities in GROUPS:
         rows = []
         for quantity in quantities:
-            values = [each.simulated.outcome.results[place][quantity.name] for each in found.motors]
+            values = [each[quantity.name] for each in results]
             if quantity.rare and not any(values):
                 continue
-            rows.append((f"  {quantity.label}", quantity.unit, *_marked(quantity, values)))
+            # A pump's ratio of powers looks like an efficiency, and a good one.
+            compared = all_drive or not quantity.name.endswith("efficiency")
+            cells = _marked(quantity, values) if compared else map(quantity.written, values)
+            rows.append((f"  {quantity.label}", quantity.unit, *cells))
         table.add_row(f"[bold]{name}[/bold]")
         for row in rows:
             table.add_row(*row)

@@ -54,7 +54,7 @@ def raw_terms(metrics: Metrics) -> dict[str, Float[Array, ""]]:
         metrics.torque_ripple**2,
         metrics.pressure_ripple**2,
         # A motor that takes shaft power and gives oil is a pump: the worse the more it gives.
-        1 - metrics.efficiency * jnp.sign(metrics.input_power),
+        1 - metrics.efficiency * jnp.where(metrics.input_power < 0, -1.0, 1.0),
         metrics.spectral_pressure,
         metrics.spectral_torque,
         metrics.jerk_objective,
