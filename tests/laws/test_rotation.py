@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 from camring.geometry.notch import ReliefNotch
 from camring.geometry.window import TabulatedWindow
 from camring.interfaces.compiled import simulate, summarise
-from camring.metrics.independent import independent_results
+from camring.metrics.independent import OrbitError, independent_results
 from camring.metrics.independent.machine import machine_of
 from camring.physics.chamber import chamber_at
 from camring.physics.mirror import mirrored
@@ -162,3 +162,5 @@ def test_a_relief_notch_turns_forwards_only(lopsided):
     )
     with pytest.raises(ValueError, match="closing edge"):
         turned(motor, backwards(lopsided).point)
+    with pytest.raises(OrbitError, match="closing edge"):
+        machine_of(motor, lopsided.fluid, backwards(lopsided).point)

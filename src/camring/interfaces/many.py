@@ -96,7 +96,7 @@ def evaluate_many(
     look = look or LanesLook.search()
     judge_chunk = _in_lanes if fits(system.motor) else _one_by_one
     judged = _judged_by(judge_chunk, space, system, goal, look, chunk)
-    first = judged(points[:chunk])
+    first = judged(points[:chunk])  # by itself: side by side every thread would compile
     whole = jax.tree.map(lambda leaf: np.empty((*leaf.shape[:-1], len(points)), leaf.dtype), first)
 
     def keep(start: int, part: Assessment) -> None:

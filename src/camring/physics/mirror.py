@@ -26,7 +26,7 @@ def has_mirror_image(motor: Motor) -> bool:
 def mirrored(motor: Motor) -> Motor:
     """The motor with cam and valve plate reflected in the line of angle 0.
 
-    For concrete numbers of one motor that `has_mirror_image`.
+    For a motor that `has_mirror_image`; with a radial cam lanes may lie along the last axis.
     """
     return eqx.tree_at(
         lambda each: (each.cam, each.valve_plate),

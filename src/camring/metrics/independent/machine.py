@@ -12,6 +12,8 @@ from typing import Any, Literal
 
 import numpy as np
 
+from camring.metrics.independent.failure import OrbitError
+
 
 @dataclass(frozen=True)
 class Oil:
@@ -181,7 +183,7 @@ def _from_behind(machine: Machine) -> Machine:
 
     def behind(window: Window) -> Window:
         if window.notch_area:
-            raise NotImplementedError("the independent solver has no trailing notch")
+            raise OrbitError("a relief notch at the closing edge is no part of this solver")
         places, shares = window.table
         table = (tuple(-each for each in reversed(places)), tuple(reversed(shares)))
         return replace(window, centre=-window.centre, table=table)
