@@ -34,6 +34,7 @@ def layouts_ranked(found: "Studies") -> Figure:
         values = [worst(each, name) * result.factor for each in shown]
         if name == "torque_ripple":
             panel.set_xscale("log")
+            panel.xaxis.set_major_formatter("{x:g}")
         for place, value, each in zip(places, values, shown, strict=True):
             face = COLOUR if each.layout.balanced else "white"
             panel.plot(value, place, "o", markersize=6, color=COLOUR, markerfacecolor=face)
