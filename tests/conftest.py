@@ -39,7 +39,10 @@ def _forget_programs():
     if MAPS.exists() and MAPS.read_bytes().count(b"\n") > MOST_MAPS:
         import jax
 
+        from camring.interfaces.kept_program import forget_programs
+
         jax.clear_caches()
+        forget_programs()
 
 
 COMPILED = "JAX_COMPILATION_CACHE_DIR"

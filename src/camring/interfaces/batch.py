@@ -7,12 +7,12 @@ Everything that asks for many results (maps, sweeps) comes through
 from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Int
 
+from camring.interfaces.motor_program import motor_program
 from camring.metrics.summary import Metrics, summarise
 from camring.physics.cycle import simulate
 from camring.physics.fluid import AbstractFluid
@@ -74,7 +74,7 @@ def results_of_many(
     return Many(*joined)
 
 
-@eqx.filter_jit
+@motor_program
 def _results(
     chunk: tuple[Motor, AbstractFluid, OperatingPoint], resolution: Resolution, harmonics: int
 ) -> tuple[Metrics, Int[Array, " many"]]:

@@ -2,7 +2,6 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
-import equinox as eqx
 import jax
 import numpy as np
 from jaxtyping import Bool, Float
@@ -16,6 +15,7 @@ from camring.interfaces.fitted_numbers import FittedNumber, space_of
 from camring.interfaces.many import cores
 from camring.interfaces.measured_duties import duties_of
 from camring.interfaces.measured_table import MeasuredTable
+from camring.interfaces.motor_program import motor_program
 from camring.numerics.verdict import Verdict
 from camring.objective.measurable import measurable_slopes
 from camring.objective.slopes import Operated, directions
@@ -27,8 +27,8 @@ Seen = tuple[Float[np.ndarray, " value"], Float[np.ndarray, "value number"]]
 TOGETHER = 8
 """Directions in one call: the same compiled program for any number of numbers up to it."""
 
-_directions = eqx.filter_jit(directions)
-_slopes = eqx.filter_jit(measurable_slopes)
+_directions = motor_program(directions)
+_slopes = motor_program(measurable_slopes)
 
 
 class Bench:

@@ -10,9 +10,9 @@ from rich.table import Table
 from camring.interfaces.comparison import Comparison
 from camring.interfaces.config.document import printable
 from camring.interfaces.errors import InputError
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.report.quantities import GROUPS, Quantity
 from camring.interfaces.simulation_output import console, versions
-from camring.interfaces.validation import finite
 
 # A mark beside each colour; blue and orange differ for every eye.
 BEST, WORST = "▲", "▽"

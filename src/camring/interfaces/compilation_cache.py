@@ -19,6 +19,8 @@ import warnings
 from pathlib import Path
 
 SWITCH = "CAMRING_CACHE"
+PROGRAMS = "CAMRING_PROGRAMS"
+"""Where `kept_program` finds its folder; set here, for this process and what it spawns."""
 MARKER_SUFFIX = ".running"
 
 
@@ -30,10 +32,12 @@ def keep_compiled_programs() -> Path | None:
     """
     folder = private_folder()
     if folder is None:
+        os.environ.pop(PROGRAMS, None)
         return None
     _discard_cut_off(folder)
     _mark(folder)
 
+    os.environ[PROGRAMS] = str(folder)
     os.environ.update(
         JAX_COMPILATION_CACHE_DIR=str(folder),
         JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS="0",

@@ -8,11 +8,11 @@ of motors with the same counts.
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from camring.interfaces.motor_program import motor_program, named
 from camring.metrics import summary
 from camring.metrics.accuracy import Accurate, Look, climb
 from camring.metrics.summary import Metrics
@@ -38,10 +38,10 @@ from camring.physics.rotation import turned
 from camring.physics.system import System
 
 # The short names are those under which `import camring` offers them.
-_simulate = eqx.filter_jit(cycle.simulate)
-summarise = summarise_compiled = eqx.filter_jit(summary.summarise)
-waveforms = eqx.filter_jit(sampling.waveforms)
-_judge = eqx.filter_jit(judge)
+_simulate = motor_program(cycle.simulate)
+summarise = summarise_compiled = motor_program(summary.summarise)
+waveforms = motor_program(sampling.waveforms)
+_judge = motor_program(judge)
 
 
 def simulate(
@@ -51,7 +51,8 @@ def simulate(
     resolution: Resolution | None = None,
 ) -> Cycle:
     """`camring.physics.cycle.simulate`, compiled: one program for both directions."""
-    return _simulate(turned(motor, point), fluid, point, resolution)
+    found = _simulate(turned(motor, point), fluid, point, resolution)
+    return named(found, motor.name)
 
 
 simulate_compiled = simulate
@@ -126,9 +127,9 @@ def assess(system: System, goal: Goal, resolution: Resolution | None = None) -> 
 
 evaluate = assess
 
-_directions = eqx.filter_jit(directions)
-_result_slopes = eqx.filter_jit(result_slopes)
-_judged_slopes = eqx.filter_jit(judged_slopes)
+_directions = motor_program(directions)
+_result_slopes = motor_program(result_slopes)
+_judged_slopes = motor_program(judged_slopes)
 
 
 def slopes(

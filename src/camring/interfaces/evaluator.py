@@ -4,13 +4,13 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
-import equinox as eqx
 import jax
 import numpy as np
 from jaxtyping import Array, Float
 
 from camring.interfaces.compiled import Solved, assess, judge_solved, slopes, solve
 from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
+from camring.interfaces.motor_program import motor_program, named
 from camring.interfaces.record import Outcome
 from camring.numerics.verdict import Verdict
 from camring.objective.baseline import approximate
@@ -112,13 +112,17 @@ def model_of(text: str) -> Model:
     return Model(parse_motor_file(text))
 
 
-@eqx.filter_jit
 def applied(space: AbstractSpace, system: System, point: Point) -> System:
     """The system of one design, from one compiled program."""
+    return named(_applied(space, system, point), system.motor.name)
+
+
+@motor_program
+def _applied(space: AbstractSpace, system: System, point: Point) -> System:
     return space.apply(system, point)
 
 
-@eqx.filter_jit
+@motor_program
 def _approximate(
     space: DesignSpace, system: System, goal: Goal, points: Float[np.ndarray, "points dimension"]
 ) -> Float[Array, " points"]:

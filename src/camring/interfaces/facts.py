@@ -9,6 +9,7 @@ import numpy as np
 from rich.table import Table
 
 from camring.interfaces.config.document import printable
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.report.data import Constraint, Design
 from camring.interfaces.report.limits import constraints_of
 from camring.interfaces.simulated import Simulated, timing_of
@@ -19,7 +20,6 @@ from camring.interfaces.simulation_output import (
     versions,
     written,
 )
-from camring.interfaces.validation import finite
 from camring.numerics.quantity import ArrayLike
 
 

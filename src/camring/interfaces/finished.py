@@ -11,9 +11,10 @@ from rich.console import Console
 from rich.table import Table
 
 from camring.interfaces.config import MotorFile
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.record import Record
 from camring.interfaces.report.quantities import QUANTITIES, change
-from camring.interfaces.validation import Validation, finite
+from camring.interfaces.validation import Validation
 
 NOT_VALIDATED = 3
 SHOWN = (

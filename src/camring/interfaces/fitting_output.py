@@ -11,10 +11,10 @@ from rich.table import Table
 from camring.interfaces.config.document import printable
 from camring.interfaces.fitting import Fit
 from camring.interfaces.grid import quantity
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.new_file import require_new, write_new_file
 from camring.interfaces.report.quantities import Quantity, significant
 from camring.interfaces.simulation_output import console, versions
-from camring.interfaces.validation import finite
 from camring.objective.measurable import CASE_DRAIN
 
 CORRELATIONS_FROM = 2

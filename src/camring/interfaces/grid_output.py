@@ -15,9 +15,9 @@ from camring.interfaces.config.document import printable
 from camring.interfaces.config.keys import nearest
 from camring.interfaces.errors import InputError, quote
 from camring.interfaces.grid import Grid, plain_unit, quantity, result_names
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.new_file import write_new_file
 from camring.interfaces.simulation_output import console, versions
-from camring.interfaces.validation import finite
 
 LONGEST_TABLE = 60  # rows on a terminal
 MOST_RESULTS = 12  # pictures of a map, panels of a sweep

@@ -11,12 +11,13 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Float
 
 from camring.interfaces.errors import InputError
+from camring.interfaces.motor_program import motor_program
 from camring.objective.design_space import AbstractSpace
 from camring.objective.lanes import (
     ManySlopes,
@@ -42,15 +43,9 @@ Points = Float[np.ndarray, "design coordinate"]
 # Eight numbers at once where the processor can; a pool of threads inside a program would
 # only stand in the way of ours.
 _OPTIONS: dict[str, Any] = {
-    "compiler_options": {
-        "xla_cpu_prefer_vector_width": 512,
-        "xla_cpu_multi_thread_eigen": False,
-    }
+    "xla_cpu_prefer_vector_width": 512,
+    "xla_cpu_multi_thread_eigen": False,
 }
-
-
-def _program(function: Callable) -> Callable:
-    return eqx.filter_jit(function, **_OPTIONS)
 
 
 def evaluate_many(
@@ -137,7 +132,7 @@ def judge_and_keep(
     space: AbstractSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> tuple[tuple[LaneCycle, ...], Assessment]:
     """Some points side by side, a program for each number of them; and what was solved."""
-    designs = _designs(space, system, points)
+    designs = _designs(space, system, jnp.asarray(points))
     cycles = _solve(designs, look)
     metrics = _summarise(cycles, goal, look)
     return cycles, _judge(designs, cycles, metrics, goal)
@@ -153,17 +148,17 @@ def slopes_in_lanes(
     first: int | None = None,
 ) -> ManySlopes:
     """`objective.lanes.slopes_of_designs` of what `judge_and_keep` solved, as NumPy arrays."""
-    return jax.device_get(_slopes(space, system, points, cycles, goal, look, first))
+    return jax.device_get(_slopes(space, system, jnp.asarray(points), cycles, goal, look, first))
 
 
-_designs = _program(designs_in_lanes)
-_solve = _program(solve_designs)
-_summarise = _program(summarise_designs)
-_judge = _program(judge_designs)
-_slopes = _program(slopes_of_designs)
+_designs = motor_program(designs_in_lanes, _OPTIONS)
+_solve = motor_program(solve_designs, _OPTIONS)
+_summarise = motor_program(summarise_designs, _OPTIONS)
+_judge = motor_program(judge_designs, _OPTIONS)
+_slopes = motor_program(slopes_of_designs, _OPTIONS)
 
 
-@eqx.filter_jit
+@motor_program
 def _one_by_one(
     space: AbstractSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> Assessment:

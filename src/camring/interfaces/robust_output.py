@@ -8,12 +8,12 @@ import typer
 from rich.table import Table
 
 from camring.interfaces.config.document import printable
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.new_file import make_new_folder, write_new_file
 from camring.interfaces.robust import GIVEN, NOMINAL, ROBUST, RobustDesign
 from camring.interfaces.scatter import OBJECTIVE, Scatter
 from camring.interfaces.scatter_output import kept_sentence, samples_csv, shown, summary
 from camring.interfaces.simulation_output import console, versions
-from camring.interfaces.validation import finite
 
 PICTURE = "comparison.svg"
 DESIGNS = {NOMINAL: "nominal", ROBUST: "robust"}

@@ -7,9 +7,9 @@ from rich.table import Table
 
 from camring.interfaces.config.document import printable
 from camring.interfaces.grid import quantity
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.sensitivities import Sensitivities
 from camring.interfaces.simulation_output import console, versions
-from camring.interfaces.validation import finite
 
 
 def show(found: Sensitivities) -> None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from math import degrees
 from typing import Any
 
+import jax
 import numpy as np
 
 from camring.interfaces.compiled import (
@@ -17,6 +18,7 @@ from camring.interfaces.compiled import (
 from camring.interfaces.config import MotorFile
 from camring.interfaces.crowding import crowded
 from camring.interfaces.evaluator import outcome_of
+from camring.interfaces.motor_program import motor_program
 from camring.interfaces.record import Outcome
 from camring.metrics.accuracy import Accurate, Look, climb
 from camring.metrics.summary import Metrics
@@ -148,11 +150,11 @@ def _short_of(climbed: Accurate) -> list[str]:
 
 def timing_of(file: MotorFile) -> Timing:
     """Port timing at the first operating point, in plain numbers."""
-    import jax
-
     system, point = file.system, file.system.operating_points[0]
-    motor = turned(system.motor, point)
-    return jax.device_get(jax.jit(port_timing)(motor, system.fluid, point))
+    return jax.device_get(_port_timing(turned(system.motor, point), system.fluid, point))
+
+
+_port_timing = motor_program(port_timing)
 
 
 def _gaps(timing: Timing) -> tuple[float, float]:

@@ -11,9 +11,9 @@ from rich.table import Table
 
 from camring import __version__
 from camring.interfaces.config.document import printable
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.report.quantities import GROUPS, QUANTITIES, significant
 from camring.interfaces.simulated import Simulated
-from camring.interfaces.validation import finite
 from camring.metrics.accuracy import Accurate
 
 WIDTH_IN_PIPES = 100

@@ -9,6 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from camring.interfaces.config.document import printable
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.new_file import make_new_folder, write_new_file
 from camring.interfaces.report.quantities import significant
 from camring.interfaces.scatter import OBJECTIVE, tolerances_of
@@ -22,7 +23,6 @@ from camring.interfaces.scatter_output import (
 )
 from camring.interfaces.simulation_output import console, versions
 from camring.interfaces.tolerance_study import ToleranceStudy
-from camring.interfaces.validation import finite
 
 TABLE, PICTURE = "samples.csv", "scatter.svg"
 BLAMED = {

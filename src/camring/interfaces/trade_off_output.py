@@ -12,11 +12,11 @@ from rich.table import Table
 from camring.interfaces.config.document import printable
 from camring.interfaces.errors import InputError
 from camring.interfaces.grid import plain_unit, quantity, result_names
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.new_file import make_new_folder, write_new_file
 from camring.interfaces.simulation_output import console, versions
 from camring.interfaces.study_folder import require_vacant
 from camring.interfaces.trade_off import INDEPENDENT_AGREEMENT, TradeOff
-from camring.interfaces.validation import finite
 
 TABLE, PICTURE, DESIGNS = "front.csv", "front.svg", "designs"
 NOT_VALIDATED = 3

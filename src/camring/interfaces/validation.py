@@ -17,6 +17,7 @@ from camring.interfaces.beside import scale_of
 from camring.interfaces.compiled import assess
 from camring.interfaces.config import MotorFile
 from camring.interfaces.evaluator import outcome_of
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.own_command import CommandFailed, OwnCommand
 from camring.interfaces.own_evaluator import ask_about, names_given, overlaid
 from camring.interfaces.record import Outcome, failed
@@ -232,14 +233,3 @@ def _view(outcome: Outcome) -> dict[str, Any]:
         "results": [dict(each) for each in outcome.results],
         "failure": outcome.failure,
     }
-
-
-def finite(value: Any) -> Any:
-    """JSON has no word for what is not a number."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    if isinstance(value, Mapping):
-        return {key: finite(each) for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [finite(each) for each in value]
-    return value

@@ -88,15 +88,13 @@ def waveform_dataset(
     results
         Those of model.md section 10 for each operating point, SI; kept when given.
     """
-    import equinox
     import jax.numpy as jnp
     import xarray
 
-    from camring.physics.waveforms import waveforms
+    from camring.interfaces.compiled import waveforms
 
-    sampled = equinox.filter_jit(waveforms)
     angle = 2 * pi * np.arange(samples) / samples
-    waves = [sampled(cycle, jnp.asarray(angle)) for cycle in cycles]
+    waves = [waveforms(cycle, jnp.asarray(angle)) for cycle in cycles]
     variables = {
         name: (
             ("operating_point", "angle"),

@@ -2,9 +2,8 @@
 
 from collections.abc import Iterator
 
-import equinox as eqx
 import jax
-import jax.numpy as jnp
+import numpy as np
 
 from camring.metrics.summary import Metrics
 
@@ -51,7 +50,6 @@ COMPANIONS = frozenset(
 """
 
 
-@eqx.filter_jit
 def error_estimate(
     results: Metrics, coarser: Metrics, factor: float = FACTOR, floor: float = FLOOR
 ) -> Metrics:
@@ -70,9 +68,9 @@ def error_estimate(
         of `coarser`.
     """
     return jax.tree.map(
-        lambda fine, coarse: factor * jnp.abs(fine - coarse) + floor * jnp.abs(fine),
-        results,
-        coarser,
+        lambda fine, coarse: factor * np.abs(fine - coarse) + floor * np.abs(fine),
+        jax.device_get(results),
+        jax.device_get(coarser),
     )
 
 

@@ -11,7 +11,6 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 from jaxtyping import Float
-from scipy.special import ndtri
 
 from camring.search.sampling import generator, sobol
 
@@ -34,6 +33,8 @@ def standardised(
     if kind == "uniform":
         return sqrt(3) * (2 * share - 1)[:, None]
     if kind == "normal":
+        from scipy.special import ndtri  # slow to import, for whoever has no tolerances
+
         return ndtri(share)[:, None]
     turn = 2 * np.pi * share
     return sqrt(2) * np.stack([np.cos(turn), np.sin(turn)], axis=1)

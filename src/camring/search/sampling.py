@@ -8,7 +8,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Float
-from scipy.stats import qmc
 
 
 def generator(seed: int, trial: int, stream: int = 0) -> np.random.Generator:
@@ -25,6 +24,8 @@ def sobol(
     The sequence is extensible: more points begin with the same points.
     Owen (1998), Scrambling Sobol' and Niederreiter-Xing points.
     """
+    from scipy.stats import qmc  # half a second, which whoever only simulates need not wait
+
     sampler = qmc.Sobol(dimension, scramble=True, rng=random)
     # Always a power of two: balanced, and scipy does not warn.
     return sampler.random_base2(max(count - 1, 1).bit_length())[:count]

@@ -3,12 +3,12 @@
 from dataclasses import dataclass, replace
 from math import ceil, log2, pi
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from camring.interfaces.motor_program import motor_program
 from camring.metrics.spectrum import quadrature_samples
 from camring.physics.cycle import simulate
 from camring.physics.fluid import AbstractFluid
@@ -108,7 +108,7 @@ def _in_chunks(
     return Found(*(np.concatenate(leaves)[:count] for leaves in zip(*parts, strict=True)))
 
 
-@eqx.filter_jit
+@motor_program
 def _cycles(motor: Motor, fluid: AbstractFluid, points: OperatingPoint, angle: Array) -> tuple:
     def one(point: OperatingPoint) -> tuple[Array, ...]:
         cycle = simulate(motor, fluid, point, Resolution())

@@ -10,10 +10,10 @@ from rich.table import Table
 
 from camring.interfaces.config.document import printable
 from camring.interfaces.grid import plain_unit, quantity
+from camring.interfaces.json_numbers import finite
 from camring.interfaces.layouts.study import Studied, Studies
 from camring.interfaces.simulation_output import console, versions
 from camring.interfaces.study_folder import write_safely
-from camring.interfaces.validation import finite
 
 TABLE, PICTURE = "ranking.csv", "ranking.svg"
 NOT_VALIDATED = 3

@@ -2,11 +2,11 @@
 
 from typing import TYPE_CHECKING, NamedTuple
 
-import equinox as eqx
 import numpy as np
 from jaxtyping import Array, Float
 
 from camring.geometry.contour import pressure_angle, undercut_factor
+from camring.interfaces.motor_program import motor_program
 from camring.metrics.spectrum import OrderSpectrum, order_spectrum
 from camring.numerics.quantity import Q, real
 from camring.physics.cycle import reference_radius
@@ -14,7 +14,7 @@ from camring.physics.cycle import reference_radius
 if TYPE_CHECKING:
     from camring.physics.motor import Motor
 
-spectra = eqx.filter_jit(order_spectrum)
+spectra = motor_program(order_spectrum)
 
 
 class Unrolled(NamedTuple):
@@ -35,7 +35,7 @@ def unrolled(motor: "Motor", highest: float, count: int) -> Unrolled:
     return _unrolled(motor, real(np.linspace(0, highest, count)))
 
 
-@eqx.filter_jit
+@motor_program
 def _unrolled(motor: "Motor", angle: Q[Float[Array, " angle"], "rad"]) -> Unrolled:
     jet, plate = motor.cam.pitch_radius(angle), motor.valve_plate
     return Unrolled(

@@ -2,16 +2,14 @@
 
 from collections.abc import Sequence
 
-import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 
 from camring.interfaces.config import MotorFile
+from camring.interfaces.evaluator import applied
 from camring.interfaces.report.coordinates import coordinates_of
 from camring.interfaces.report.data import Sensitivity
 from camring.interfaces.report.quantities import significant
 from camring.interfaces.report.simulation import results_of
-from camring.objective.design_space import DesignSpace
 from camring.physics.system import System
 
 __all__ = ["RESULTS", "sensitivities_of"]
@@ -33,10 +31,9 @@ def sensitivities_of(
     space, system = motor_file.design_space, motor_file.system
     if space is None:
         return ()
-    apply = eqx.filter_jit(DesignSpace.apply)
 
     def results(unit_point: np.ndarray) -> dict[str, float]:
-        moved: System = apply(space, system, jnp.asarray(unit_point))
+        moved = applied(space, system, unit_point)
         return _mean_results(moved, motor_file.goal.harmonics)
 
     centre = np.asarray(point, dtype=float)

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
 from camring.geometry.contour import pitch_curvature, pressure_angle, undercut_factor
 from camring.interfaces.compiled import cycles, summarise_compiled, waveforms
+from camring.interfaces.motor_program import motor_program
 from camring.interfaces.report.data import Design, Duty, Facts, Profile, Result, Waves
 from camring.interfaces.simulated import Simulated
 from camring.metrics.spectrum import order_spectrum
@@ -73,7 +73,7 @@ def _profile(motor: Motor, angle: np.ndarray) -> Profile:
     )
 
 
-@eqx.filter_jit
+@motor_program
 def _torque_by_order(cycle: Cycle, highest_order: int) -> Array:
     return order_spectrum(cycle, highest_order).torque
 

@@ -1,0 +1,239 @@
+"""Programs that the next run neither traces nor compiles again.
+
+JAX keeps compiled programs under the text of the program, and to have that text it
+traces and lowers every function anew in each process: most of what a short command takes.
+Here a program is found by what it is made from: the source of this package, the versions
+of what compiles it, and a description of its arguments. Where the description would have
+to reach beyond the package (a law of a user's own), JAX does as it always does.
+
+What is kept is machine code, in the folder of `compilation_cache`, which nobody else can write.
+"""
+
+import contextlib
+import hashlib
+import os
+import pickle
+import sys
+import threading
+import time
+import zlib
+from collections.abc import Callable, Hashable, Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Generic, ParamSpec, TypeVar
+from weakref import WeakSet
+
+import equinox as eqx
+import jax
+import numpy as np
+from jax.experimental.compilation_cache import compilation_cache as jax_cache
+from jax.experimental.serialize_executable import deserialize_and_load, serialize
+
+from camring.interfaces.compilation_cache import PROGRAMS
+from camring.interfaces.description import Indescribable, described, model_source
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+SUFFIX = ".program"
+SWITCH = "jax_enable_compilation_cache"
+UNUSED_SECONDS = 90 * 86_400.0
+"""After these a file is thrown away; whoever needs it again compiles once more."""
+
+
+class _Place:
+    """Stands in a result for one of the program's arrays."""
+
+
+class Program:
+    """Machine code between lists of arrays, and the tree that its answers belong into."""
+
+    def __init__(self, call: Callable[[list[Any]], list[Any]], result: Any) -> None:
+        self._call = call
+        self._leaves, self._structure = jax.tree.flatten(result)
+
+    def __call__(self, arrays: list[Any]) -> Any:
+        answers = iter(self._call(arrays))
+        filled = [next(answers) if isinstance(leaf, _Place) else leaf for leaf in self._leaves]
+        return jax.tree.unflatten(self._structure, filled)
+
+
+_alive: "WeakSet[KeptProgram]" = WeakSet()
+
+
+def forget_programs() -> None:
+    """Those of all functions, as `jax.clear_caches` does with its own."""
+    for each in list(_alive):
+        each.forget()
+
+
+class KeptProgram(Generic[Arguments, Result]):
+    """A function compiled once for a user, where `equinox.filter_jit` compiles it for a process.
+
+    Called in the same way: arrays are traced, everything else is part of the program. It
+    is just that inside another traced function, and where nothing can be kept.
+
+    Parameters
+    ----------
+    function
+        Pure, and reached by its name in a module of this package.
+    compiler_options
+        As `jax.jit` takes them.
+    """
+
+    def __init__(
+        self,
+        function: Callable[Arguments, Result],
+        compiler_options: dict[str, Any] | None = None,
+    ) -> None:
+        self._function, self._options = function, compiler_options
+        options: dict[str, Any] = {}
+        if compiler_options is not None:
+            options["compiler_options"] = compiler_options
+        self._traced = eqx.filter_jit(function, **options)
+        self._programs: dict[Hashable, Program] = {}
+        self._others: set[Hashable] = set()
+        self._busy: dict[Hashable, threading.Lock] = {}
+        _alive.add(self)
+
+    def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
+        folder = os.environ.get(PROGRAMS)
+        leaves, structure = jax.tree.flatten((args, kwargs))
+        if not folder or any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+            return self._traced(*args, **kwargs)
+        key = structure, *(_seen(leaf) for leaf in leaves)
+        program = self._programs.get(key)
+        arrays = [leaf for leaf in leaves if _is_array(leaf)]
+        if program is None:
+            program = self._found(key, Path(folder), (args, kwargs), arrays)
+        return self._traced(*args, **kwargs) if program is None else program(arrays)
+
+    def forget(self) -> None:
+        """Gives back the machine code that this process holds; what is on disk stays."""
+        self._programs.clear()
+
+    def _found(self, key: Hashable, folder: Path, given: Any, arrays: list[Any]) -> Program | None:
+        """From disk, or compiled and put there; None where the program is JAX's to keep."""
+        with self._busy.setdefault(key, threading.Lock()):
+            if key in self._others:
+                return None
+            if key not in self._programs:
+                try:
+                    path = folder / f"{self._function.__name__}-{self._name(given)}{SUFFIX}"
+                except Indescribable:
+                    self._others.add(key)
+                    return None
+                self._programs[key] = _loaded(path, arrays) or self._compiled(path, given, arrays)
+            return self._programs[key]
+
+    def _name(self, given: Any) -> str:
+        words = f"{made_with()}{described(self._function)}{self._options}{described(given)}"
+        return hashlib.sha256(words.encode()).hexdigest()[:40]
+
+    def _compiled(self, path: Path, given: Any, arrays: list[Any]) -> Program:
+        leaves, structure = jax.tree.flatten(given)
+        result = None
+
+        def between_arrays(chosen: list[Any]) -> list[Any]:
+            nonlocal result
+            places = iter(chosen)
+            filled = [next(places) if _is_array(leaf) else leaf for leaf in leaves]
+            args, kwargs = jax.tree.unflatten(structure, filled)
+            answer = self._function(*args, **kwargs)
+            result = jax.tree.map(lambda leaf: _Place() if _is_array(leaf) else leaf, answer)
+            return [leaf for leaf in jax.tree.leaves(answer) if _is_array(leaf)]
+
+        between_arrays.__name__ = self._function.__name__  # in JAX's logs and profiles
+        lowered = jax.jit(between_arrays).lower(arrays)
+        with _jax_store.unused():
+            compiled = lowered.compile(compiler_options=self._options)
+        _keep(path, compiled, result)
+        return Program(compiled, result)
+
+
+def _is_array(leaf: Any) -> bool:
+    return isinstance(leaf, jax.Array | np.ndarray | np.generic)
+
+
+def _seen(leaf: Any) -> Hashable:
+    """What of a leaf makes another program."""
+    if _is_array(leaf):
+        return leaf.shape, leaf.dtype, getattr(leaf, "weak_type", False)
+    return type(leaf), leaf
+
+
+def _keep(path: Path, compiled: jax.stages.Compiled, result: Any) -> None:
+    """Writes a program under its name at once or not at all; a full disk is no error."""
+    with contextlib.suppress(Exception):  # whatever could not be kept is compiled once more
+        content = zlib.compress(pickle.dumps((*serialize(compiled), result)), 1)
+        draft = path.with_suffix(f".{os.getpid()}{threading.get_ident()}")
+        draft.write_bytes(content)
+        draft.replace(path)
+        for each in path.parent.glob(f"*{SUFFIX}"):
+            if time.time() - each.stat().st_mtime > UNUSED_SECONDS:
+                each.unlink(missing_ok=True)
+
+
+def _loaded(path: Path, arrays: list[Any]) -> Program | None:
+    """A program from disk that has shown that it runs; None where there is none such."""
+    if not path.exists():
+        return None
+    try:
+        code, inner, outer, result = pickle.loads(zlib.decompress(path.read_bytes()))
+        program = Program(deserialize_and_load(code, inner, outer), result)
+        jax.block_until_ready(program(arrays))
+        os.utime(path)
+    except Exception:  # whatever is wrong with a file, compiling makes a new one
+        return None
+    return program
+
+
+def _setting(name: str) -> Any:
+    return getattr(jax.config, name)
+
+
+class _JaxStore:
+    """The switch of JAX's own store, off while any thread compiles what is kept here.
+
+    What comes out of that store cannot be stored again: its machine code is not whole.
+    """
+
+    def __init__(self) -> None:
+        self._users, self._gate = 0, threading.Lock()
+
+    @contextlib.contextmanager
+    def unused(self) -> Iterator[None]:
+        if not _setting(SWITCH) and not self._users:
+            yield
+            return
+        with self._gate:
+            self._users += 1
+            self._switch(on=False)
+        try:
+            yield
+        finally:
+            with self._gate:
+                self._users -= 1
+                self._switch(on=self._users == 0)
+
+    def _switch(self, *, on: bool) -> None:
+        if _setting(SWITCH) != on:
+            jax.config.update(SWITCH, on)
+            jax_cache.reset_cache()  # it looks at the switch once only
+
+
+_jax_store = _JaxStore()
+
+
+@lru_cache(maxsize=1)
+def made_with() -> str:
+    """Everything besides its function and its arguments that a program depends on."""
+    versions = (sys.version, jax.__version__, jax.lib.__version__, eqx.__version__, np.__version__)
+    device = jax.devices()[0]
+    settings = (
+        os.environ.get("XLA_FLAGS"),
+        _setting("jax_enable_x64"),
+        _setting("jax_default_matmul_precision"),
+        (device.platform, device.device_kind, jax.device_count()),
+    )
+    return f"{model_source()}{versions}{settings}"

@@ -1,0 +1,173 @@
+"""A kept program answers as its function does, and whatever is wrong with a file costs time only."""
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import motors
+import numpy as np
+import pytest
+
+from camring.interfaces.compilation_cache import PROGRAMS
+from camring.interfaces.compiled import simulate
+from camring.interfaces.description import Indescribable, described
+from camring.interfaces.kept_program import SUFFIX, KeptProgram
+from camring.interfaces.motor_program import motor_program, named
+from camring.metrics.timing import port_timing
+from camring.physics.leakage import ConstantLeakage
+from camring.physics.resolution import Resolution
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv(PROGRAMS, str(tmp_path))
+    return tmp_path
+
+
+@pytest.fixture
+def compilations(monkeypatch):
+    """The functions that were compiled, in order."""
+    names = []
+    compiled = KeptProgram._compiled
+
+    def counted(self, path, *rest):
+        names.append(path.name.partition("-")[0])
+        return compiled(self, path, *rest)
+
+    monkeypatch.setattr(KeptProgram, "_compiled", counted)
+    return names
+
+
+def kept(folder):
+    return sorted(folder.glob(f"*{SUFFIX}"))
+
+
+def same(left, right):
+    assert jax.tree.structure(left) == jax.tree.structure(right)
+    for a, b in zip(jax.tree.leaves(left), jax.tree.leaves(right), strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
+def test_the_next_process_compiles_nothing_and_has_the_same_numbers(folder, compilations):
+    case = motors.sound_case(0)
+    first = KeptProgram(port_timing)(*case)
+    assert compilations == ["port_timing"]
+    same(KeptProgram(port_timing)(*case), first)  # a new one knows nothing but the disk
+    assert compilations == ["port_timing"]
+    same(eqx.filter_jit(port_timing)(*case), first)
+
+
+def test_other_numbers_are_no_other_program(folder, compilations):
+    timing = KeptProgram(port_timing)
+    timing(*motors.sound_case(0))
+    case = motors.sound_case(0).changed(lambda c: c.fluid.bulk_modulus, 0.9e9)
+    same(timing(*case), eqx.filter_jit(port_timing)(*case))
+    assert len(compilations) == len(kept(folder)) == 1
+
+
+def test_a_whole_cycle_comes_back_with_its_motor_and_name(folder, compilations):
+    case = motors.sound_case(1)
+    for name in ("first", "second"):
+        found = simulate(named(case.motor, name), case.fluid, case.point, Resolution.coarse())
+        assert found.motor.name == name
+        same(found.motor, named(case.motor, name))
+    assert compilations == ["simulate"]
+
+
+def test_a_name_is_no_other_program(folder, compilations):
+    timing, case = motor_program(port_timing), motors.sound_case(0)
+    for name in ("one", "another", ""):
+        timing(named(case.motor, name), case.fluid, case.point)
+    assert compilations == ["port_timing"]
+
+
+def test_what_is_no_array_makes_another_program(folder, compilations):
+    scaled = KeptProgram(jnp.full)  # a shape is not an array
+    assert scaled((2,), np.float64(3)).shape == (2,)
+    assert scaled((4,), np.float64(3)).shape == (4,)
+    assert scaled((4,), np.float32(3)).dtype == np.float32
+    assert len(compilations) == 3
+
+
+@pytest.mark.parametrize("damage", [lambda whole: whole[: len(whole) // 2], lambda whole: b"no"])
+def test_a_damaged_file_is_made_anew(folder, compilations, damage):
+    case = motors.sound_case(0)
+    first = KeptProgram(port_timing)(*case)
+    (path,) = kept(folder)
+    whole = path.read_bytes()
+    path.write_bytes(damage(whole))
+    same(KeptProgram(port_timing)(*case), first)
+    assert len(compilations) == 2
+    same(KeptProgram(port_timing)(*case), first)
+    assert len(compilations) == 2
+
+
+def test_a_folder_that_cannot_be_written_is_no_error(tmp_path, monkeypatch, compilations):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv(PROGRAMS, str(tmp_path / "file" / "programs"))
+    case = motors.sound_case(0)
+    same(KeptProgram(port_timing)(*case), eqx.filter_jit(port_timing)(*case))
+
+
+def test_without_a_folder_it_is_a_compiled_function(monkeypatch, compilations):
+    monkeypatch.delenv(PROGRAMS, raising=False)
+    case = motors.sound_case(0)
+    same(KeptProgram(port_timing)(*case), eqx.filter_jit(port_timing)(*case))
+    assert not compilations
+
+
+class OwnLeakage(ConstantLeakage):
+    """A user's law: its source is not this package's, and may be another tomorrow."""
+
+
+def test_a_law_of_a_users_own_is_never_kept(folder, compilations):
+    case = motors.sound_case(0)
+    own = eqx.tree_at(lambda m: m.leakage, case.motor, OwnLeakage(case.motor.leakage.coefficient))
+    timing = KeptProgram(port_timing)
+    for _ in range(2):
+        same(timing(own, case.fluid, case.point), eqx.filter_jit(port_timing)(*case))
+    assert not compilations
+    assert not kept(folder)
+    with pytest.raises(Indescribable, match="OwnLeakage"):
+        described(own)
+    with pytest.raises(Indescribable, match="lambda"):
+        described(lambda: None)
+
+
+def test_inside_another_traced_function_it_is_part_of_that(folder, compilations):
+    timing, case = KeptProgram(port_timing), motors.sound_case(0)
+    slopes = jax.jacfwd(
+        lambda modulus: timing(
+            case.motor, eqx.tree_at(lambda f: f.bulk_modulus, case.fluid, modulus), case.point
+        )
+    )(case.fluid.bulk_modulus)
+    assert all(np.all(np.isfinite(leaf)) for leaf in jax.tree.leaves(slopes))
+    assert not compilations
+
+
+def test_jax_keeps_what_is_its_own_before_and_after(folder):
+    before = jax.config.jax_enable_compilation_cache
+    KeptProgram(port_timing)(*motors.sound_case(0))
+    assert jax.config.jax_enable_compilation_cache == before
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (1, 1.0),
+        (1, True),
+        ("a", b"a"),
+        ((1, 2), [1, 2]),
+        ((1, (2,)), ((1, 2),)),
+        (np.zeros(2), np.zeros(3)),
+        (np.zeros(2), np.zeros(2, np.float32)),
+        (Resolution(), Resolution.coarse()),
+        (None, "None"),
+    ],
+)
+def test_descriptions_tell_apart_what_a_trace_would(one, other):
+    assert described(one) != described(other)
+
+
+def test_descriptions_hold_no_numbers_of_arrays():
+    assert described(jnp.zeros(3)) == described(jnp.ones(3))
+    assert described(motors.sound_case(0).motor) == described(motors.sound_case(0).motor)
