@@ -1,4 +1,4 @@
-"""A kept program answers as its function does, and whatever is wrong with a file costs time only."""
+"""A kept program answers as its function does; whatever is wrong with a file costs time only."""
 
 import equinox as eqx
 import jax
