@@ -13,8 +13,6 @@ from math import factorial, pi
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
-from scipy.spatial import cKDTree
 
 from camring.geometry.cam import AbstractCam, PlanarCam, RadialCam
 from camring.geometry.sampling import full_ring
@@ -188,6 +186,8 @@ class Outline:
 
     def _least(self, function: Callable[[np.ndarray], np.ndarray]) -> tuple[float, float]:
         """Parameter and value of the smallest value round the ring."""
+        from scipy.optimize import minimize_scalar  # see `closed_spline`
+
         corners = self.corners()
         step = np.diff(corners)[:, None] / _PER_SPAN
         grid = np.append((corners[:-1, None] + step * np.arange(_PER_SPAN)).reshape(-1), 2 * pi)
@@ -211,6 +211,8 @@ class Outline:
         Zero where the parallel curve is clear all round; an undercut factor
         above zero says so only of each place's neighbours.
         """
+        from scipy.spatial import cKDTree
+
         step = np.arange(16) / 16
         corners = self.corners()
         fine = (corners[:-1, None] + np.diff(corners)[:, None] * step).reshape(-1)

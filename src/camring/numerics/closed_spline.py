@@ -9,9 +9,12 @@ the curve's own arc length, and places are added where it strays.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import BSpline, CubicSpline, make_interp_spline
+
+if TYPE_CHECKING:  # SciPy takes half a second, which whoever only simulates need not wait
+    from scipy.interpolate import BSpline, CubicSpline
 
 __all__ = ["ClosedSpline", "FitError", "fit_closed"]
 
@@ -53,7 +56,9 @@ class ClosedSpline:
         return len(self.arc) - 1
 
     @cached_property
-    def _cubic(self) -> CubicSpline:
+    def _cubic(self) -> "CubicSpline":
+        from scipy.interpolate import CubicSpline
+
         flat = np.stack([self.point.real, self.point.imag], axis=1)
         flat[-1] = flat[0]
         return CubicSpline(self.arc, flat, bc_type="periodic")
@@ -63,11 +68,13 @@ class ClosedSpline:
         flat = self._cubic(arc)
         return flat[..., 0] + 1j * flat[..., 1]
 
-    def clamped(self) -> BSpline:
+    def clamped(self) -> "BSpline":
         """The same spline with the knots of a curve that begins and ends at its first point.
 
         That is the form which every reader of drawings understands.
         """
+        from scipy.interpolate import make_interp_spline
+
         flat = np.stack([self.point.real, self.point.imag], axis=1)
         flat[-1] = flat[0]
         slope = [(1, self._cubic(0.0, 1))]
