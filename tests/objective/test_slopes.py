@@ -57,7 +57,7 @@ def test_at_random_designs_of_a_motor_file():
     names = ("objective", *goal.constraints.names())
     allowed = np.array([1e-4 if name in OF_PRESSURE else 1e-6 for name in names])[:, None]
     random = np.random.default_rng(4)
-    for point in random.uniform(0.1, 0.9, (4, space.dimension)):
+    for point in random.uniform(0.1, 0.9, (2, space.dimension)):
         found = exact(space, system, goal, point)
         expected, doubt = differences(space, system, goal, point)
         scale = np.max(np.abs(found), axis=1, keepdims=True) + LEAST_SCALE
@@ -68,6 +68,33 @@ def test_at_random_designs_of_a_motor_file():
         for name, worst in zip(names, error.max(1), strict=True):
             print(f"{name}: {worst:.0e}")
         assert np.all(error < allowed)
+
+
+def test_along_random_directions_at_many_designs():
+    """The same at more designs for the same time; `benchmarks/gradient_check.py` looks at 300."""
+    motor_file = parse_motor_file(template("sine"))
+    space, system, goal = motor_file.design_space, motor_file.system, motor_file.goal
+    random = np.random.default_rng(5)
+    errors, doubts = [], []
+    for point in random.uniform(0.1, 0.9, (200, space.dimension)):
+        way = random.normal(size=space.dimension)
+        way /= np.linalg.norm(way)
+        found = exact(space, system, goal, point)
+        wide, narrow = (
+            (values(space, system, goal, point + each) - values(space, system, goal, point - each))
+            / (2 * step)
+            for step in (STEP, STEP / 2)
+            for each in (step * way,)
+        )
+        scale = np.linalg.norm(found, axis=1) + LEAST_SCALE
+        errors.append(np.abs(found @ way - (4 * narrow - wide) / 3) / scale)
+        doubts.append(np.abs(narrow - wide) / scale)
+    smooth = np.array(doubts) < 1e-4
+    error = np.where(smooth, errors, np.nan)
+    assert np.all(np.mean(smooth, axis=0) > 0.9)
+    assert np.nanmax(error[:, 0]) < 1e-6
+    assert np.all(np.nanmedian(error, axis=0) < 1e-6)
+    assert np.all(np.nanquantile(error, 0.9, axis=0) < 1e-4)
 
 
 @pytest.mark.slow
