@@ -14,6 +14,9 @@ sys.path.insert(0, str(Path(__file__).parent))
 # Two workers on two cores: linear algebra that spins in both makes each wait for the other.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# Tests compile what they look at; the command line keeps its programs as it does for users.
+os.environ.setdefault("CAMRING_PROGRAMS", "")
+
 # JAX compiles on first use, so time limits for one example mean nothing; the
 # examples are the same on every machine, so that a red test is red for everyone.
 settings.register_profile(

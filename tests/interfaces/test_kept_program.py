@@ -7,7 +7,7 @@ import motors
 import numpy as np
 import pytest
 
-from camring.interfaces.compilation_cache import PROGRAMS
+from camring.interfaces.compilation_cache import PROGRAMS, SWITCH
 from camring.interfaces.compiled import simulate
 from camring.interfaces.description import Indescribable, described
 from camring.interfaces.kept_program import SUFFIX, KeptProgram
@@ -109,10 +109,25 @@ def test_a_folder_that_cannot_be_written_is_no_error(tmp_path, monkeypatch, comp
 
 
 def test_without_a_folder_it_is_a_compiled_function(monkeypatch, compilations):
-    monkeypatch.delenv(PROGRAMS, raising=False)
+    monkeypatch.setenv(PROGRAMS, "")
     case = motors.sound_case(0)
     same(KeptProgram(port_timing)(*case), eqx.filter_jit(port_timing)(*case))
     assert not compilations
+
+
+def test_whoever_imports_the_package_has_them_too(tmp_path, monkeypatch):
+    monkeypatch.delenv(PROGRAMS, raising=False)
+    monkeypatch.setenv(SWITCH, str(tmp_path / "elsewhere"))
+    KeptProgram(port_timing)(*motors.sound_case(0))
+    assert len(list((tmp_path / "elsewhere").rglob(f"port_timing-*{SUFFIX}"))) == 1
+
+
+def test_the_switch_of_the_compilation_cache_is_theirs(tmp_path, monkeypatch):
+    monkeypatch.delenv(PROGRAMS, raising=False)
+    monkeypatch.setenv(SWITCH, "off")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    KeptProgram(port_timing)(*motors.sound_case(0))
+    assert not list(tmp_path.rglob(f"*{SUFFIX}"))
 
 
 class OwnLeakage(ConstantLeakage):

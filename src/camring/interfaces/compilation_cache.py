@@ -20,7 +20,7 @@ from pathlib import Path
 
 SWITCH = "CAMRING_CACHE"
 PROGRAMS = "CAMRING_PROGRAMS"
-"""Where `kept_program` finds its folder; set here, for this process and what it spawns."""
+"""The folder of `kept_program`, for this process and what it spawns; empty for none."""
 MARKER_SUFFIX = ".running"
 
 
@@ -31,13 +31,12 @@ def keep_compiled_programs() -> Path | None:
     spawned workers inherit and which costs `--help` nothing.
     """
     folder = private_folder()
+    os.environ[PROGRAMS] = str(folder or "")
     if folder is None:
-        os.environ.pop(PROGRAMS, None)
         return None
     _discard_cut_off(folder)
     _mark(folder)
 
-    os.environ[PROGRAMS] = str(folder)
     os.environ.update(
         JAX_COMPILATION_CACHE_DIR=str(folder),
         JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS="0",
@@ -47,6 +46,13 @@ def keep_compiled_programs() -> Path | None:
     )
     warnings.filterwarnings("ignore", message=".*persistent compilation cache.*")
     return folder
+
+
+def programs_folder() -> str:
+    """Where `kept_program` keeps its own, which needs nothing of JAX; empty for nowhere."""
+    if PROGRAMS not in os.environ:
+        os.environ[PROGRAMS] = str(private_folder() or "")
+    return os.environ[PROGRAMS]
 
 
 def private_folder() -> Path | None:

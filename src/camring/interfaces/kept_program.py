@@ -29,7 +29,7 @@ import numpy as np
 from jax.experimental.compilation_cache import compilation_cache as jax_cache
 from jax.experimental.serialize_executable import deserialize_and_load, serialize
 
-from camring.interfaces.compilation_cache import PROGRAMS
+from camring.interfaces.compilation_cache import programs_folder
 from camring.interfaces.description import Indescribable, described, model_source
 
 Arguments = ParamSpec("Arguments")
@@ -97,7 +97,7 @@ class KeptProgram(Generic[Arguments, Result]):
         _alive.add(self)
 
     def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
-        folder = os.environ.get(PROGRAMS)
+        folder = programs_folder()
         leaves, structure = jax.tree.flatten((args, kwargs))
         if not folder or any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
             return self._traced(*args, **kwargs)
