@@ -10,6 +10,7 @@ import pytest
 from camring.interfaces.compilation_cache import PROGRAMS, SWITCH
 from camring.interfaces.compiled import simulate
 from camring.interfaces.description import Indescribable, described
+from camring.interfaces.jax_store import jax_store_unused
 from camring.interfaces.kept_program import SUFFIX, KeptProgram
 from camring.interfaces.motor_program import motor_program, named
 from camring.metrics.timing import port_timing
@@ -159,10 +160,18 @@ def test_inside_another_traced_function_it_is_part_of_that(folder, compilations)
     assert not compilations
 
 
-def test_jax_keeps_what_is_its_own_before_and_after(folder):
+@pytest.mark.parametrize("in_use", [True, False])
+def test_jaxs_own_store_is_afterwards_as_it_was_before(monkeypatch, in_use):
     before = jax.config.jax_enable_compilation_cache
-    KeptProgram(port_timing)(*motors.sound_case(0))
-    assert jax.config.jax_enable_compilation_cache == before
+    try:
+        jax.config.update("jax_enable_compilation_cache", in_use)
+        with jax_store_unused():
+            with jax_store_unused():
+                assert not jax.config.jax_enable_compilation_cache
+            assert not jax.config.jax_enable_compilation_cache
+        assert jax.config.jax_enable_compilation_cache == in_use
+    finally:
+        jax.config.update("jax_enable_compilation_cache", before)
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 import dataclasses
 import hashlib
-import sys
 from collections.abc import Iterator
 from enum import Enum
 from functools import lru_cache
@@ -17,7 +16,7 @@ KNOWN = frozenset({"builtins", "camring", "equinox", "jax", "jaxlib", "numpy"})
 """Packages of which source or version are part of a description."""
 
 MODEL = ("numerics", "geometry", "physics", "metrics", "objective")
-"""Rooms that programs are written in; `model_source` stands for all of them."""
+"""Rooms that know nothing of the others."""
 
 
 class Indescribable(Exception):
@@ -67,23 +66,17 @@ def _name(value: Any) -> str:
     package, _, rest = value.__module__.partition(".")
     if package not in KNOWN or "<" in name:
         raise Indescribable(name)
-    if package == "camring" and rest.partition(".")[0] not in MODEL:
-        return f"{name} {_source(value.__module__)}"
-    return name
+    if package != "camring":
+        return name
+    return f"{name} {_source(*MODEL) if rest.partition('.')[0] in MODEL else _source('.')}"
 
 
 @lru_cache
-def _source(module: str) -> str:
-    path = sys.modules[module].__file__
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest() if path else ""
-
-
-@lru_cache(maxsize=1)
-def model_source() -> str:
-    """A word for every line of the rooms that programs are written in."""
+def _source(*folders: str) -> str:
+    """A word for every line in some folders of the package."""
     digest = hashlib.sha256()
     package = Path(__file__).parents[1]
-    for room in MODEL:
-        for source in sorted((package / room).rglob("*.py")):
+    for folder in folders:
+        for source in sorted((package / folder).rglob("*.py")):
             digest.update(str(source.relative_to(package)).encode() + source.read_bytes())
     return digest.hexdigest()

@@ -17,7 +17,7 @@ import sys
 import threading
 import time
 import zlib
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar
@@ -26,17 +26,17 @@ from weakref import WeakSet
 import equinox as eqx
 import jax
 import numpy as np
-from jax.experimental.compilation_cache import compilation_cache as jax_cache
 from jax.experimental.serialize_executable import deserialize_and_load, serialize
 
 from camring.interfaces.compilation_cache import programs_folder
-from camring.interfaces.description import Indescribable, described, model_source
+from camring.interfaces.description import Indescribable, described
+from camring.interfaces.jax_store import jax_store_unused
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
 SUFFIX = ".program"
-SWITCH = "jax_enable_compilation_cache"
+DEBUGGING = ("jax_disable_jit", "jax_debug_nans", "jax_debug_infs")
 UNUSED_SECONDS = 90 * 86_400.0
 """After these a file is thrown away; whoever needs it again compiles once more."""
 
@@ -71,7 +71,8 @@ class KeptProgram(Generic[Arguments, Result]):
     """A function compiled once for a user, where `equinox.filter_jit` compiles it for a process.
 
     Called in the same way: arrays are traced, everything else is part of the program. It
-    is just that inside another traced function, and where nothing can be kept.
+    is just that inside another traced function, where nothing can be kept, and under JAX's
+    settings for looking for mistakes.
 
     Parameters
     ----------
@@ -99,7 +100,8 @@ class KeptProgram(Generic[Arguments, Result]):
     def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
         folder = programs_folder()
         leaves, structure = jax.tree.flatten((args, kwargs))
-        if not folder or any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+        traced = any(isinstance(leaf, jax.core.Tracer) for leaf in leaves)
+        if traced or not folder or any(map(_setting, DEBUGGING)):
             return self._traced(*args, **kwargs)
         key = structure, *(_seen(leaf) for leaf in leaves)
         program = self._programs.get(key)
@@ -145,7 +147,7 @@ class KeptProgram(Generic[Arguments, Result]):
 
         between_arrays.__name__ = self._function.__name__  # in JAX's logs and profiles
         lowered = jax.jit(between_arrays).lower(arrays)
-        with _jax_store.unused():
+        with jax_store_unused():
             compiled = lowered.compile(compiler_options=self._options)
         _keep(path, compiled, result)
         return Program(compiled, result)
@@ -192,39 +194,6 @@ def _setting(name: str) -> Any:
     return getattr(jax.config, name)
 
 
-class _JaxStore:
-    """The switch of JAX's own store, off while any thread compiles what is kept here.
-
-    What comes out of that store cannot be stored again: its machine code is not whole.
-    """
-
-    def __init__(self) -> None:
-        self._users, self._gate = 0, threading.Lock()
-
-    @contextlib.contextmanager
-    def unused(self) -> Iterator[None]:
-        if not _setting(SWITCH) and not self._users:
-            yield
-            return
-        with self._gate:
-            self._users += 1
-            self._switch(on=False)
-        try:
-            yield
-        finally:
-            with self._gate:
-                self._users -= 1
-                self._switch(on=self._users == 0)
-
-    def _switch(self, *, on: bool) -> None:
-        if _setting(SWITCH) != on:
-            jax.config.update(SWITCH, on)
-            jax_cache.reset_cache()  # it looks at the switch once only
-
-
-_jax_store = _JaxStore()
-
-
 @lru_cache(maxsize=1)
 def made_with() -> str:
     """Everything besides its function and its arguments that a program depends on."""
@@ -236,4 +205,4 @@ def made_with() -> str:
         _setting("jax_default_matmul_precision"),
         (device.platform, device.device_kind, jax.device_count()),
     )
-    return f"{model_source()}{versions}{settings}"
+    return f"{versions}{settings}"
