@@ -7,7 +7,12 @@ import jax.numpy as jnp
 from stopwatch import wall_times
 
 import camring
-from camring.numerics.mesh import equidistribute, fourth_derivative_density, graded_mesh
+from camring.numerics.mesh import (
+    ElementCount,
+    equidistribute,
+    fourth_derivative_density,
+    graded_mesh,
+)
 from camring.numerics.newton import damped_newton
 from camring.numerics.periodic import _interpolate as interpolate
 from camring.numerics.periodic import _layer_width as layer_width
@@ -32,6 +37,7 @@ def stage_times(system: System) -> dict[str, float]:
     motor, fluid, point = system.motor, system.fluid, system.operating_points[0]
     resolution = Resolution()
     elements = resolution.elements * (motor.lobes // motor.cam.repeats) + motor.promised_elements()
+    count = ElementCount(elements, elements)
     period, at = motor.cam.period, jnp.asarray(STAGES)
     jit = eqx.filter_jit
     known = reference_radius(motor)
@@ -56,7 +62,7 @@ def stage_times(system: System) -> dict[str, float]:
         powers = element_powers(node_state, stages)
         density = fourth_derivative_density(mesh, powers[3], extent(stages), period)
         layer = layer_width(equation, mesh, node_state, period, fixed)
-        finer = equidistribute(mesh, density, fixed, layer, period, elements)
+        finer = equidistribute(mesh, density, fixed, layer, period, count)
         return finer, interpolate(mesh, powers, finer.at(at))
 
     @jit

@@ -1,5 +1,6 @@
 """Results of the product and of the independent solver, side by side."""
 
+from dataclasses import replace
 from functools import cache
 
 import equinox as eqx
@@ -22,9 +23,9 @@ BATCH = 8  # every run is a batch of this size, so that a structure is compiled 
 
 
 @eqx.filter_jit
-def _run(motor, fluid, point, resolution):
+def _run(motor, fluid, point, resolution, filled):
     def one(motor, fluid, point):
-        cycle = simulate(motor, fluid, point, resolution)
+        cycle = simulate(motor, fluid, point, resolution, filled)
         return cycle, summarise(cycle)
 
     return jax.vmap(one)(motor, fluid, point)
@@ -32,11 +33,13 @@ def _run(motor, fluid, point, resolution):
 
 def run_all(cases: list[Case], resolution: Resolution | None = None):
     """Cycles and metrics of motors of one structure, with a leading axis."""
+    resolution = resolution or Resolution()
+    shape, filled = replace(resolution, filled=1.0), jnp.asarray(resolution.filled)
     found = []
     for first in range(0, len(cases), BATCH):
         some = cases[first : first + BATCH]
         padded = some + [some[-1]] * (BATCH - len(some))
-        batch = _run(*stacked(padded), resolution or Resolution())
+        batch = _run(*stacked(padded), shape, filled)
         found.append(jax.tree.map(lambda leaf, count=len(some): leaf[:count], batch))  # noqa: B008
     return jax.tree.map(lambda *parts: jnp.concatenate(parts), *found)
 

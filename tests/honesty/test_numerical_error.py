@@ -1,5 +1,7 @@
 """The reported numerical error never understates the true one (house.md)."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from both_roads import RESULTS, independent_awkward, independent_sound, run_all, single
@@ -43,6 +45,16 @@ def test_the_error_of_awkward_motors_is_not_understated(trouble):
     cases = [awkward_case(seed, trouble) for seed in seeds]
     truths = [independent_awkward(seed, trouble, STRUCTURES[0]) for seed in seeds]
     assert list(understated(cases, truths)) == []
+
+
+def test_elements_that_are_not_filled_are_as_if_they_were_not_there():
+    cases = [sound_case(seed, STRUCTURES[0]) for seed in SEEDS]
+    _, filled = run_all(cases, replace(Resolution(), filled=0.7))
+    _, fewer = run_all(cases, replace(Resolution(), elements=224))
+    for name in RESULTS:
+        np.testing.assert_allclose(
+            getattr(filled, name), getattr(fewer, name), rtol=1e-9
+        )  # rounding
 
 
 def test_the_reported_error_is_not_absurdly_large_either():

@@ -6,7 +6,7 @@ of motors with the same counts.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import jax
 import jax.numpy as jnp
@@ -51,7 +51,9 @@ def simulate(
     resolution: Resolution | None = None,
 ) -> Cycle:
     """`camring.physics.cycle.simulate`, compiled: one program for both directions."""
-    found = _simulate(turned(motor, point), fluid, point, resolution)
+    resolution = resolution or Resolution()
+    shape, filled = replace(resolution, filled=1.0), jnp.asarray(resolution.filled)
+    found = _simulate(turned(motor, point), fluid, point, shape, filled)
     return named(found, motor.name)
 
 

@@ -1,6 +1,5 @@
 """The motor of a file, simulated and judged: what `simulate` and `check` print."""
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from math import degrees
 from typing import Any
@@ -24,6 +23,7 @@ from camring.metrics.accuracy import Accurate, Look, climb
 from camring.metrics.summary import Metrics
 from camring.metrics.timing import Timing, port_timing
 from camring.physics.cycle import Cycle
+from camring.physics.operating_point import OperatingPoint
 from camring.physics.resolution import Resolution
 from camring.physics.rotation import turned
 
@@ -100,24 +100,14 @@ def simulated(file: MotorFile, *, estimate: bool = True, accuracy: float = ACCUR
     system, goal = file.system, file.goal
     if not estimate:
         return _judged(file, solve(system, goal))
-    # Compiling both programs is nearly all the work of a first run; two threads share it.
-    helper = ThreadPoolExecutor(max_workers=1)
-    second = Resolution().second_look()
-    coarser = helper.submit(solve, system, goal, second)
-    try:
-        climbed = []
-        for place, point in enumerate(system.operating_points):
+    climbed = []
+    for point in system.operating_points:
 
-            def look(resolution: Resolution, place: int = place, at: Any = point) -> Look:
-                if resolution == second:
-                    found = coarser.result()
-                    return Look(found.cycles[place], found.metrics[place])
-                cycle = simulate_compiled(system.motor, system.fluid, at, resolution)
-                return Look(cycle, summarise_compiled(cycle, goal.harmonics))
+        def look(resolution: Resolution, at: OperatingPoint = point) -> Look:
+            cycle = simulate_compiled(system.motor, system.fluid, at, resolution)
+            return Look(cycle, summarise_compiled(cycle, goal.harmonics))
 
-            climbed.append(climb(look, accuracy))
-    finally:
-        helper.shutdown(wait=False, cancel_futures=True)
+        climbed.append(climb(look, accuracy))
     cycles = tuple(each.cycle for each in climbed)
     found = _judged(file, Solved(system, cycles, tuple(each.metrics for each in climbed)))
     errors = tuple(_plain(each.error) for each in climbed)

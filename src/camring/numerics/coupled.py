@@ -34,6 +34,7 @@ from camring.numerics.coupled_step import (
 from camring.numerics.crossing import crossings, with_nodes_at
 from camring.numerics.mesh import (
     Breakpoints,
+    ElementCount,
     Mesh,
     equidistribute,
     folded,
@@ -77,7 +78,7 @@ def solve_coupled(
     breakpoints: Breakpoints,
     period: float,
     links: int,
-    elements: int,
+    elements: ElementCount,
     uncoupled: Orbit,
     shared_guess: Float[Array, ""],
 ) -> CoupledOrbit:
@@ -190,7 +191,7 @@ def _laid_anew(
     orbit: CoupledOrbit,
     breakpoints: Breakpoints,
     period: float,
-    elements: int,
+    elements: ElementCount,
 ) -> Mesh:
     """A mesh of one period, not yet folded, by what copy and shared state do when coupled."""
     own, shared = orbit

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import jax.numpy as jnp
 import numpy as np
 from jax.lax import stop_gradient
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Int
 
 from camring.numerics.spline import floor_past_rounding
 
@@ -48,6 +48,17 @@ class Mesh(NamedTuple):
         width = self.width[element]
         offset = position - self.start[element]
         return element, jnp.where(width > 0, offset / jnp.where(width > 0, width, 1), 1)
+
+
+class ElementCount(NamedTuple):
+    """How many elements a mesh has room for, and how many of them it divides the period into.
+
+    The others have no width and lie at its end. So meshes of different fineness are
+    arrays of one shape, and one compiled program.
+    """
+
+    room: int
+    used: int | Int[Array, ""]
 
 
 def segment_ends(breakpoints: Float[Array, " breakpoint"], period: float) -> tuple[Array, Array]:
@@ -96,7 +107,7 @@ def equidistribute(
     breakpoints: Breakpoints,
     layer: Float[Array, " breakpoint"],
     period: float,
-    elements: int,
+    elements: ElementCount,
 ) -> Mesh:
     """A mesh whose elements hold equal shares of the density's integral.
 
@@ -110,12 +121,12 @@ def equidistribute(
     mass_at = _interpolate_sorted(jnp.concatenate([begin, end[-1:]]), node, mass)
     thin = LAYER_ELEMENTS * breakpoints.sharp
     promised = jnp.concatenate([jnp.zeros(1, thin.dtype), jnp.cumsum(1 + thin)])
-    wanted = jnp.round(mass_at / mass_at[-1] * (elements - promised[-1]))
+    wanted = jnp.round(mass_at / mass_at[-1] * (elements.used - promised[-1]))
     first = wanted.astype(jnp.int32) + promised
     ordinary = first[1:] - first[:-1] - thin
 
-    element = jnp.arange(elements)
-    segment = jnp.searchsorted(first, element, side="right") - 1
+    element = jnp.arange(elements.room)
+    segment = jnp.searchsorted(first[:-1], element, side="right") - 1
     share_mass = (mass_at[1:] - mass_at[:-1]) / ordinary
     past_thin = element - (first[:-1] + thin)[segment]
     target = mass_at[segment] + jnp.maximum(past_thin, 0) * share_mass[segment]

@@ -40,6 +40,7 @@ from camring.numerics.crossing import crossings, with_nodes_at
 from camring.numerics.equation import Equation, Forcing
 from camring.numerics.mesh import (
     Breakpoints,
+    ElementCount,
     Mesh,
     equidistribute,
     follow_breakpoints,
@@ -62,9 +63,9 @@ FORGOTTEN = 1e-100
 
 
 class PeriodicResolution(NamedTuple):
-    """How finely an orbit is looked at; all static."""
+    """How finely an orbit is looked at; all static but for the elements that are used."""
 
-    elements: int
+    elements: ElementCount
     """Elements in one period, more than the breakpoints take for themselves."""
     refinements: int = 1
     """Times the mesh is laid anew from a collocation solution."""

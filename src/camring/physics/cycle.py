@@ -13,6 +13,7 @@ from jaxtyping import Array, Float
 from camring.geometry.extremes import extreme_radius
 from camring.numerics.coupled import CoupledOrbit
 from camring.numerics.equation import Equation
+from camring.numerics.mesh import ElementCount
 from camring.numerics.periodic import Orbit, PeriodicResolution, settle, solve_periodic
 from camring.numerics.quantity import Q
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES
@@ -101,18 +102,23 @@ def simulate(
     fluid: AbstractFluid,
     point: OperatingPoint,
     resolution: Resolution | None = None,
+    filled: Float[Array, ""] | None = None,
 ) -> Cycle:
     """The periodic cycle of a motor at an operating point.
 
     Traceable, differentiable, and batched with `vmap`. Faults are in
     `cycle.verdict`; nothing is raised.
+
+    Parameters
+    ----------
+    filled
+        In place of the resolution's, as a number that may be traced: one program for both looks.
     """
     resolution = resolution or Resolution()
     motor = turned(motor, point)
     reference = reference_radius(motor)
     breakpoints = motor.breakpoints()
-    pitches = motor.lobes // motor.cam.repeats
-    elements = resolution.elements * pitches + motor.promised_elements()
+    elements = _elements(motor, resolution, resolution.filled if filled is None else filled)
 
     def orbit_at(held: OperatingPoint, refinements: int) -> Orbit:
         """With both port pressures constant."""
@@ -153,6 +159,15 @@ def neighbour(cycle: Cycle, motor: Motor, fluid: AbstractFluid, point: Operating
     known = CoupledOrbit(cycle.orbit, cycle.gallery)
     both = settle_with_manifold(motor, fluid, point, reference, known, breakpoints)
     return _judged(motor, fluid, point, reference, *both)
+
+
+def _elements(
+    motor: Motor, resolution: Resolution, filled: float | Float[Array, ""]
+) -> ElementCount:
+    """Of one cam period, those that breakpoints take for themselves included."""
+    pitches, promised = motor.lobes // motor.cam.repeats, motor.promised_elements()
+    used = jnp.round(filled * resolution.elements).astype(int)
+    return ElementCount(resolution.elements * pitches + promised, used * pitches + promised)
 
 
 def _equation(

@@ -22,7 +22,7 @@ from camring.numerics.coupled import (
     solve_coupled,
 )
 from camring.numerics.coupled_step import CoupledEquation
-from camring.numerics.mesh import Breakpoints
+from camring.numerics.mesh import Breakpoints, ElementCount
 from camring.numerics.periodic import Orbit
 from camring.numerics.quantity import Q
 from camring.physics.chamber import Chamber, chamber_alone
@@ -68,7 +68,7 @@ def solve_with_manifold(
     uncoupled: Orbit,
     gallery_pressure: Q[Float[Array, ""], "Pa"],
     breakpoints: Breakpoints,
-    elements: int,
+    elements: ElementCount,
 ) -> CoupledOrbit:
     """Chamber and gallery together.
 

@@ -1,4 +1,4 @@
-"""How finely a cycle is looked at: counts that shape arrays, all static."""
+"""How finely a cycle is looked at: counts that shape arrays, and how far these are filled."""
 
 from dataclasses import dataclass, replace
 
@@ -16,6 +16,8 @@ class Resolution:
     elements: int = 320
     refinements: int = 3
     harmonics: int = 600
+    filled: float = 1.0
+    """Share of the elements that divide a lobe pitch; the others have no width."""
 
     @classmethod
     def coarse(cls) -> "Resolution":
@@ -37,6 +39,7 @@ class Resolution:
 
         Seven tenths of the elements: at order four its error is four times as
         large. Half of them can be too few for the layers of a slow motor, and then
-        the difference says nothing about the finer mesh.
+        the difference says nothing about the finer mesh. The others are left without
+        width, so that both looks are one program.
         """
-        return replace(self, elements=7 * self.elements // 10)
+        return replace(self, filled=0.7 * self.filled)
