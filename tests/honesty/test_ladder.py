@@ -38,8 +38,9 @@ def eyes(exact: Look, error_of_default: float):
     asked = []
 
     def look(resolution: Resolution) -> Look:
-        asked.append(resolution.elements)
-        return off_by(exact, error_of_default * (320 / resolution.elements) ** 4)
+        used = round(resolution.filled * resolution.elements)
+        asked.append(used)
+        return off_by(exact, error_of_default * (320 / used) ** 4)
 
     return look, asked
 
