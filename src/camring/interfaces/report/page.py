@@ -7,6 +7,7 @@ from camring.interfaces.report import tables
 from camring.interfaces.report.data import ReportData
 from camring.interfaces.report.figure import Figure
 from camring.interfaces.report.head import head
+from camring.interfaces.report.limits import MARGIN_BASES
 from camring.interfaces.report.machine import machine_figure
 from camring.interfaces.report.pictures.cam import cam_figures
 from camring.interfaces.report.pictures.contact import contact_figures
@@ -86,7 +87,7 @@ def _limits(data: ReportData) -> str:
         element("summary", "The same as a table"),
         tables.constraint_table(data.constraints, data.designs),
     )
-    return plates([figure]) + table
+    return plates([figure]) + element("p", MARGIN_BASES, class_="lead small") + table
 
 
 def _cam(data: ReportData) -> str:
