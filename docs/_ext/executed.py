@@ -2,11 +2,13 @@
 
 `{run} sh` runs one command a line; `{run} python` runs in one namespace a page, or with
 `:script: NAME` as a program of its own; `:picture: FILE WORDS` shows a picture that was made,
-`:last: N` only the last lines printed. What fails is an error of the build. All pages share one
-folder, so a study made by one page is there for the next; when one is stale all are run again.
+`:first: N` and `:last: N` only the first or last lines printed, `:folded: WORDS` folds the Python
+away below these words. What fails is an error of the build. All pages share one folder, so a study
+made by one page is there for the next; when one is stale all are run again. `__file__` is the page.
 """
 
 import contextlib
+import html
 import io
 import os
 import shutil
@@ -23,7 +25,9 @@ SPACES: dict[str, dict] = {}  # of Python names, by page
 
 class Run(SphinxDirective):
     has_content, required_arguments = True, 1
-    option_spec = dict.fromkeys(("picture", "script", "last"), directives.unchanged)
+    option_spec = dict.fromkeys(
+        ("picture", "script", "first", "last", "folded"), directives.unchanged
+    )
 
     def run(self):
         room = _room(self.env)
@@ -37,6 +41,8 @@ class Run(SphinxDirective):
             shown = [_block("python", source), _block("console", said)]
         else:
             shown = [_block("python", source)]
+            if "folded" in self.options:
+                shown = _folded(self.options["folded"], shown)
             if said := self.python(source, room):
                 shown.append(_block("text", said))
         if "picture" in self.options:
@@ -64,18 +70,26 @@ class Run(SphinxDirective):
         keep_compiled_programs()
         with contextlib.chdir(room), contextlib.redirect_stdout(io.StringIO()) as said:
             try:
-                exec(source, SPACES.setdefault(self.env.docname, {}))
+                page = {"__file__": self.env.doc2path(self.env.docname)}
+                exec(source, SPACES.setdefault(self.env.docname, page))
             except Exception as error:
                 raise self.error(f"Python failed: {type(error).__name__}: {error}") from error
         return self.cut(said.getvalue())
 
     def cut(self, said: str) -> str:
         lines = [line.rstrip() for line in said.rstrip().splitlines()]
+        if (first := int(self.options.get("first", len(lines)))) < len(lines):
+            lines = [*lines[:first], "..."]
         return "\n".join(lines[-int(self.options.get("last", 0)) :])
 
 
 def _block(language: str, text: str) -> nodes.Node:
     return nodes.literal_block(text, text, language=language)
+
+
+def _folded(words: str, inside: list[nodes.Node]) -> list[nodes.Node]:
+    head = f"<details><summary>{html.escape(words)}</summary>"
+    return [nodes.raw("", head, format="html"), *inside, nodes.raw("", "</details>", format="html")]
 
 
 def _room(env) -> Path:

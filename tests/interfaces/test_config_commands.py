@@ -10,8 +10,9 @@ from motor_files import SOUND, with_line
 from typer.testing import CliRunner
 
 from camring.interfaces.cli import app
-from camring.interfaces.config import read_motor_file
+from camring.interfaces.config import parse_motor_file, read_motor_file
 from camring.interfaces.config.template import PROFILES
+from camring.interfaces.simulated import simulated as looked_at
 
 RUN = CliRunner()
 RESULTS = """
@@ -131,6 +132,18 @@ class TestSimulate:
         document = json.loads(RUN.invoke(app, ["simulate", str(path), "--json"]).stdout)
         assert any("overlap by 2 deg at the inner" in each for each in document["warnings"])
         assert 0 < document["results"][0]["efficiency"] < 1
+
+    def test_a_motor_that_wastes_most_of_its_power_is_a_warning(self):
+        text = with_line('leakage_coefficient = "5e-11 m^3/(s*Pa)"', SIMPLE)
+        found = looked_at(parse_motor_file(text), estimate=False)
+        said = next(each for each in found.warnings() if "hydraulic power reaches" in each)
+        assert said.startswith(f"Only {100 * found.outcome.results[0]['efficiency']:.2g} %")
+
+    def test_a_shaft_that_is_driven_is_a_warning(self):
+        text = with_line('shift = "30 deg"', SIMPLE)
+        text = text[: text.index("[design_space]")]
+        said = " ".join(looked_at(parse_motor_file(text), estimate=False).warnings())
+        assert "The shaft is driven" in said
 
     def test_bad_input_is_one_sentence(self, tmp_path):
         path = tmp_path / "bad.toml"

@@ -121,6 +121,27 @@ def test_what_is_left_over_in_an_order_is_told(exact):
     assert not any("is no chance" in sentence for sentence in exact.warnings)
 
 
+def test_rows_at_one_operating_point_are_told(exact):
+    """Three nearly equal rows, of torque and flow or of efficiency alone."""
+    ones, duties = np.ones(9), exact.table.duties
+    near = {name: values[0] * (1 + 0.01 * np.arange(9)) for name, values in duties.items()}
+    assert not any("one speed and pressure" in each for each in exact.warnings)
+    both = dataclasses.replace(exact, table=dataclasses.replace(exact.table, duties=near))
+    said = [each for each in both.warnings if "one speed and pressure" in each]
+    assert len(said) == 1
+    assert "not which law loses it elsewhere" in said[0]
+    alone = dataclasses.replace(
+        exact,
+        table=dataclasses.replace(
+            exact.table, duties=near, values={"efficiency": ones}, deviations={"efficiency": ones}
+        ),
+        results=("efficiency",) * 18,
+    )
+    said = [each for each in alone.warnings if "one speed and pressure" in each]
+    assert "efficiency alone does not tell friction from leakage there" in said[0]
+    assert "stand for both" in said[0]
+
+
 def test_a_column_in_the_wrong_unit_is_told(exact):
     wrong = dataclasses.replace(
         exact, measured=np.where(exact.of("supply_flow"), 60, 1) * exact.measured

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import sys
 
 import equinox as eqx
 import numpy as np
@@ -15,7 +16,7 @@ from camring.interfaces.compiled import simulate, summarise
 from camring.interfaces.config import parse_motor_file
 from camring.interfaces.errors import InputError
 from camring.interfaces.grid import result_names
-from camring.interfaces.grid_output import chosen_results, csv_text
+from camring.interfaces.grid_output import Folder, chosen_results, csv_text
 from camring.interfaces.operating_map import operating_map
 from camring.interfaces.ranges import axis, point_counts
 from camring.interfaces.sweep import sweep
@@ -168,6 +169,17 @@ def test_the_map_command_writes_a_table_and_pictures(motor, tmp_path):
     said = json.loads(done.stdout)
     assert np.shape(said["results"]["efficiency"]) == (4, 3)
     assert [each["unit"] for each in said["axes"]] == ["rpm", "bar"]
+
+
+def test_without_matplotlib_the_table_comes_and_says_that_the_picture_does_not(
+    small_map, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    names = ("efficiency", "torque_ripple")
+    written = Folder(tmp_path, "map.csv", names, "png", replace=False).write(small_map, names)
+    assert [each.name for each in written] == ["map.csv"]
+    assert [each.name for each in tmp_path.iterdir()] == ["map.csv"]
+    assert "picture is left out. Pictures need matplotlib" in capsys.readouterr().err
 
 
 def test_the_sweep_command_prints_and_writes(motor, tmp_path):

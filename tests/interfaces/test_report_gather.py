@@ -214,11 +214,14 @@ def test_the_verdict_of_a_validation_is_told_in_words():
     seen = {"objective": 0.1, "constraints": {"stroke_low": -0.03, "x": -0.2}, "results": results}
     eyes = {"search": seen, "finer": {**seen, "failure": "no convergence"}}
     check = Check("max_contact_stress at finer resolution", True, "margin 0.02")
-    document = json.loads(Validation(3, True, "Validated: all holds.", [check], {}).to_json())
+    name = "agreement of the best motor at finer resolution"  # which the page looks for
+    checks = [check, Check(name, True, "largest difference 9.0e-07, in min_pressure")]
+    document = json.loads(Validation(3, True, "Validated: all holds.", checks, {}).to_json())
     verdict = verdict_of({**document, "views": {"given": eyes}}, weights=[1, 3])
     assert verdict.validated
     assert verdict.sentence == "All holds."
     assert verdict.checks[0].name == "Highest contact stress at finer resolution"
+    assert verdict.checks[1].name == "Agreement of the best motor at finer resolution"
     (view,) = verdict.views
     assert view.torque_ripple == pytest.approx(0.065)
     assert np.isnan(view.efficiency)

@@ -157,6 +157,8 @@ def test_everything_a_reviewer_asks_for_is_there(page):
         "Leave-one-out",
         "Convergence of the search",
         "Periodicity residual",
+        "Numerical error: how far a finer resolution and an independent solver are",
+        "by SciPy's stiff solver: largest difference 4.4e-06, in lowest contact force",
         "wheel_motor.toml",
         "0.10.2",
         "seed",

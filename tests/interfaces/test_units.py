@@ -21,6 +21,9 @@ EXAMPLES = {
     ("5 cm3", "m3"): 5e-6,
     ("5 cm³", "m**3"): 5e-6,
     ("5 mL", "m^3"): 5e-6,
+    ("5 ccm", "m^3"): 5e-6,
+    ("100 U/min", "rad/s"): 10.471975511965978,
+    ("6 l/min", "m3/s"): 1e-4,
     ("2e-13 m^3/(s*Pa)", "m3/(s.Pa)"): 2e-13,
     ("80 N*s/m", "N.s/m"): 80,
     ("80 N s/m", "kg/s"): 80,
@@ -43,6 +46,8 @@ EXAMPLES = {
     ("1 1/s", "1/s"): 1,
 }
 
+PINTS = {"°": "degree", "%": "percent", "µm": "um", "rev": "turn", "U": "turn", "ccm": "cm**3"}
+
 
 @pytest.mark.parametrize(("example", "value"), EXAMPLES.items(), ids=lambda each: str(each))
 def test_quantities_are_what_they_say(example, value):
@@ -51,7 +56,7 @@ def test_quantities_are_what_they_say(example, value):
 
 @pytest.mark.parametrize("name", EVERYDAY)
 def test_the_table_agrees_with_pint(name):
-    asked = _ask_pint({"°": "degree", "%": "percent", "µm": "um", "rev": "turn"}.get(name, name))
+    asked = _ask_pint(PINTS.get(name, name))
     assert asked is not None
     assert asked.factor == pytest.approx(EVERYDAY[name].factor, rel=1e-14)
     assert asked.powers == EVERYDAY[name].powers

@@ -10,6 +10,7 @@ import pytest
 import xarray
 
 from camring.interfaces import waveform_file
+from camring.interfaces.commands.simulate import simulate as command
 from camring.interfaces.errors import InputError
 from camring.interfaces.waveform_file import (
     ENDINGS,
@@ -165,6 +166,15 @@ def test_an_unknown_ending_is_told_those_that_are_known(simulated, tmp_path, nam
         write_waveforms(tmp_path / name, *simulated)
     assert all(ending in str(said.value) for ending in ENDINGS)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("absent/out.nc", "no existing folder"), ("kept.csv", "no CSV file")]
+)
+def test_the_place_is_looked_at_before_the_motor_is(tmp_path, name, words):
+    (tmp_path / "kept.csv").write_text("mine")
+    with pytest.raises(InputError, match=words):
+        command(tmp_path / "no_motor.toml", waveforms=tmp_path / name)
 
 
 def test_a_place_that_does_not_exist_is_said_in_a_sentence(simulated, tmp_path):

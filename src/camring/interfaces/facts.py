@@ -11,7 +11,7 @@ from rich.table import Table
 from camring.interfaces.config.document import printable
 from camring.interfaces.json_numbers import finite
 from camring.interfaces.report.data import Constraint, Design
-from camring.interfaces.report.limits import constraints_of
+from camring.interfaces.report.limits import MARGIN_BASES, constraints_of
 from camring.interfaces.simulated import Simulated, timing_of
 from camring.interfaces.simulation_output import (
     console,
@@ -32,6 +32,7 @@ def print_facts(found: Simulated) -> None:
     out.print(facts)
     out.print()
     out.print(_limits(found))
+    out.print(MARGIN_BASES, markup=False)
     print_verdict(found, out)
 
 

@@ -13,6 +13,7 @@ from rich.table import Table
 from camring.interfaces.config import MotorFile
 from camring.interfaces.json_numbers import finite
 from camring.interfaces.record import Record
+from camring.interfaces.report.limits import MARGIN_BASES
 from camring.interfaces.report.quantities import QUANTITIES, change
 from camring.interfaces.validation import Validation
 
@@ -90,6 +91,7 @@ def show(finished: Finished, *, as_json: bool) -> int:
     for place in range(len(finished.given.outcome.results)):
         console.print(_results(finished, place))
     console.print(_margins(finished))
+    console.print(MARGIN_BASES, markup=False)
     if finished.surrogates:
         console.print(_surrogates(finished.surrogates), markup=False)
     console.print(f"{finished.evaluations} evaluations. {finished.stopped}", markup=False)

@@ -20,7 +20,11 @@ BETTER_MEASURED = {
     "motor.valve_plate.discharge_coefficient": "measure torque at higher speeds",
     "fluid.bulk_modulus": "measure ripple",
 }
-OTHERWISE = "measure at other speeds and pressures"
+ELSEWHERE = "at other speeds and pressures"
+OTHERWISE = f"measure {ELSEWHERE}"
+NEARLY_ONE = 1.2  # highest over lowest
+_OF_FLOW = {"supply_flow", "volumetric_efficiency", "case_drain", "input_power"}
+_OF_TORQUE = {"mean_torque", "hydromechanical_efficiency", "output_power"}
 _MADE_OF = {
     "hydromechanical_efficiency": {"mean_torque"},
     "volumetric_efficiency": {"supply_flow"},
@@ -35,6 +39,7 @@ def warnings_of(found: Fit) -> list[str]:
     return [
         *_unsettled(found),
         *_far(found),
+        *_one_place(found),
         *_untold(found),
         *_tangled(found),
         *_at_limits(found),
@@ -63,6 +68,25 @@ def _far(found: Fit) -> list[str]:
                 "pressures, and at the displacement of the motor file."
             )
     return said
+
+
+def _one_place(found: Fit) -> list[str]:
+    """Rows at one operating point tell how much is lost there, hardly which law loses it."""
+    duties = {"shaft_speed": "speed", _pressure(found): "pressure"}
+    rows = np.unique(found.rows)
+    for name in duties:
+        values = np.abs(found.table.duties[name][rows])
+        if np.max(values) > NEARLY_ONE * np.min(values):
+            return []
+    measured, numbers = set(found.table.values), [number.key for number in found.numbers]
+    said = "These rows lie at nearly one speed and pressure: "
+    if measured & _OF_FLOW and measured & _OF_TORQUE:
+        said += "they tell how much is lost there, not which law loses it elsewhere"
+    else:
+        kinds = _listed([name.replace("_", " ") for name in found.table.values])
+        said += f"{kinds} alone does not tell friction from leakage there, and {_listed(numbers)} "
+        said += ("stands" if len(numbers) == 1 else "stand") + " for both"
+    return [f"{said}; the intervals are of chance only. Measure torque and flow {ELSEWHERE}."]
 
 
 def _untold(found: Fit) -> list[str]:

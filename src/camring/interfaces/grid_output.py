@@ -62,7 +62,7 @@ class Folder:
     pictures
         Names of its pictures, without ending; none without a format.
     picture_format
-        `png`, `svg`, `pdf` or `none`.
+        `png`, `svg`, `pdf` or `none`; without matplotlib it is `none`, which is said.
     replace
         Whether files of these names may be replaced.
 
@@ -82,12 +82,8 @@ class Folder:
     ) -> None:
         self.path, self.replace = path, replace
         self.table = path / csv_name
-        drawn = pictures if picture_format != "none" else ()
+        drawn = pictures if picture_format != "none" and _drawable() else ()
         self.pictures = {name: path / f"{name}.{picture_format}" for name in drawn}
-        if drawn:
-            from camring.interfaces.plots import require_matplotlib
-
-            require_matplotlib()
         if path.exists() and not path.is_dir():
             raise InputError(printable(path), "is no folder", "give --out another name")
         if not replace:
@@ -120,6 +116,12 @@ class Folder:
             else:
                 typer.echo(f"No picture of {name}: it has no value at any point.", err=True)
         return written
+
+
+def _drawable() -> bool:
+    from camring.interfaces.plots import drawable
+
+    return drawable()
 
 
 def csv_text(grid: Grid) -> str:

@@ -32,8 +32,8 @@ LOOSE = 0.01  # of a limit's scale; a limit broken by more at fresh samples was 
 
 
 def write(found: RobustDesign, folder: Path) -> None:
-    """Two motor files, their samples, and the picture."""
-    from camring.interfaces.plots import robust_comparison, save
+    """Two motor files, their samples, and the picture where matplotlib is."""
+    from camring.interfaces.plots import drawable
 
     make_new_folder(folder)
     for name, word in DESIGNS.items():
@@ -41,7 +41,10 @@ def write(found: RobustDesign, folder: Path) -> None:
         write_new_file(
             folder / f"{word}_samples.csv", samples_csv(found.file, found.scatters[name])
         )
-    save(robust_comparison(found), folder / PICTURE)
+    if drawable():
+        from camring.interfaces.plots import robust_comparison, save
+
+        save(robust_comparison(found), folder / PICTURE)
 
 
 def show(found: RobustDesign, folder: Path, *, as_json: bool) -> int:
@@ -53,8 +56,9 @@ def show(found: RobustDesign, folder: Path, *, as_json: bool) -> int:
         out.print(_table(found))
         for sentence in sentences(found):
             out.print(sentence, markup=False)
-    files = ", ".join(f"{word}.toml" for word in DESIGNS.values())
-    typer.echo(f"Wrote {files}, {PICTURE} and samples in {folder}.", err=as_json)
+    names = [f"{word}.toml" for word in DESIGNS.values()]
+    files = ", ".join(names + [PICTURE] * (folder / PICTURE).exists())
+    typer.echo(f"Wrote {files} and samples in {folder}.", err=as_json)
     return 0 if not broken(found) and better(found) else NOT_CONFIRMED
 
 

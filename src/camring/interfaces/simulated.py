@@ -28,6 +28,7 @@ from camring.physics.resolution import Resolution
 from camring.physics.rotation import turned
 
 ACCURACY = 1e-5
+POOR = 0.5  # an efficiency below which no motor is meant to work
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,6 +172,16 @@ def _about(results: Any, file: MotorFile) -> list[str]:
             f"The roller leaves the ring{{}}: the radial force falls to "
             f"{results['min_contact_force']:.4g} N."
         )
-    if not np.isfinite(results["efficiency"]) or not 0 < results["efficiency"] < 1:
+    if results["mean_torque"] <= 0:
+        said.append(
+            f"The shaft is driven, it drives nothing{{}}: the mean torque is "
+            f"{results['mean_torque']:.4g} N m; look at the timing."
+        )
+    elif not np.isfinite(results["efficiency"]) or not 0 < results["efficiency"] < 1:
         said.append("The motor delivers no sensible power{}: look at its timing.")
+    elif results["efficiency"] < POOR:
+        said.append(
+            f"Only {100 * results['efficiency']:.2g} % of the hydraulic power reaches the "
+            "shaft{}: check timing and leakage; no limit asks for efficiency."
+        )
     return said

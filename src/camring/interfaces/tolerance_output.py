@@ -38,12 +38,15 @@ TWO_ROADS_APART = 0.1  # of the variance, beyond which slopes do not tell it
 
 
 def write(found: ToleranceStudy, folder: Path) -> None:
-    """samples.csv and scatter.svg."""
-    from camring.interfaces.plots import save, scatter_histograms
+    """samples.csv, and scatter.svg where matplotlib is."""
+    from camring.interfaces.plots import drawable
 
     make_new_folder(folder)
     write_new_file(folder / TABLE, samples_csv(found.file, found.scatter))
-    save(scatter_histograms(found.scatter), folder / PICTURE)
+    if drawable():
+        from camring.interfaces.plots import save, scatter_histograms
+
+        save(scatter_histograms(found.scatter), folder / PICTURE)
 
 
 def show(found: ToleranceStudy) -> None:
@@ -181,7 +184,8 @@ def _pair(by_slopes: float, by_regression: float, total: float) -> str:
 
 def told(folder: Path, *, as_json: bool) -> None:
     """Where the files are."""
-    typer.echo(f"Wrote {TABLE} and {PICTURE} in {folder}.", err=as_json)
+    files = TABLE + f" and {PICTURE}" * (folder / PICTURE).exists()
+    typer.echo(f"Wrote {files} in {folder}.", err=as_json)
 
 
 __all__ = ["document", "show", "told", "write"]

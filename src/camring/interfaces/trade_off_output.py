@@ -24,10 +24,7 @@ SHOWN = 7  # designs in the table on a terminal
 
 
 def require_place(folder: Path) -> None:
-    """Refuse a folder that is there, or a picture that cannot be drawn, before work begins."""
-    from camring.interfaces.plots import require_matplotlib
-
-    require_matplotlib()
+    """Refuse a folder that is there before work begins."""
     require_vacant(folder)
     if not folder.parent.is_dir():
         where = printable(folder.parent)
@@ -37,15 +34,18 @@ def require_place(folder: Path) -> None:
 
 
 def write(found: TradeOff, folder: Path) -> None:
-    """front.csv, front.svg, and a complete motor file of each design."""
-    from camring.interfaces.plots import front, save
+    """front.csv, front.svg where matplotlib is, and a complete motor file of each design."""
+    from camring.interfaces.plots import drawable
 
     designs = folder / DESIGNS
     make_new_folder(designs)
     for number, each in enumerate(found.compromises, 1):
         write_new_file(designs / f"{number:02d}.toml", each.text)
     write_new_file(folder / TABLE, csv_text(found))
-    save(front(found), folder / PICTURE)
+    if drawable():
+        from camring.interfaces.plots import front, save
+
+        save(front(found), folder / PICTURE)
 
 
 def csv_text(found: TradeOff) -> str:
@@ -89,7 +89,8 @@ def show(found: TradeOff, folder: Path, *, as_json: bool) -> int:
         out.print(_table(found))
         for sentence in sentences(found):
             out.print(sentence, markup=False)
-    typer.echo(f"Wrote {TABLE}, {PICTURE} and {DESIGNS}/ in {folder}.", err=as_json)
+    files = TABLE + f", {PICTURE}" * (folder / PICTURE).exists()
+    typer.echo(f"Wrote {files} and {DESIGNS}/ in {folder}.", err=as_json)
     return 0 if found.independent <= INDEPENDENT_AGREEMENT else NOT_VALIDATED
 
 

@@ -48,6 +48,8 @@ EVERYDAY: dict[str, Unit] = {
     "µm": _unit(1e-6, **_LENGTH),
     "L": _unit(1e-3, m=3),
     "l": _unit(1e-3, m=3),
+    "ccm": _unit(1e-6, m=3),
+    "cc": _unit(1e-6, m=3),
     "mL": _unit(1e-6, m=3),
     "ml": _unit(1e-6, m=3),
     "kg": _unit(1, kg=1),
@@ -61,6 +63,7 @@ EVERYDAY: dict[str, Unit] = {
     "deg": _unit(pi / 180, rad=1),
     "°": _unit(pi / 180, rad=1),
     "rev": _unit(2 * pi, rad=1),
+    "U": _unit(2 * pi, rad=1),  # of German data sheets, U/min
     "rpm": _unit(2 * pi / 60, rad=1, s=-1),
     "N": _unit(1, **_FORCE),
     "kN": _unit(1e3, **_FORCE),

@@ -31,6 +31,7 @@ __all__ = [
     "ENDINGS",
     "RESULT",
     "WAVEFORMS",
+    "places_of",
     "require_known_ending",
     "waveform_dataset",
     "write_simulation",
@@ -178,17 +179,29 @@ def write_simulation(
     InputError
         As `write_waveforms`.
     """
-    place = Path(path)
-    require_known_ending(place)
-    kind = _KINDS[place.suffix.lower()]
-    places = [place]
-    if place.suffix.lower() == ".csv" and results:
-        places.append(place.with_name(f"{place.stem}_results{place.suffix}"))
-    for each in places:
-        _require_replaceable(each, kind)
+    places = places_of(path, with_results=bool(results))
+    kind = _KINDS[places[0].suffix.lower()]
     dataset = waveform_dataset(system, cycles, source=source, samples=samples, results=results)
     for number, each in enumerate(places):
         _write_whole(each, kind.writers[number], dataset)
+    return places
+
+
+def places_of(path: str | Path, *, with_results: bool = True) -> list[Path]:
+    """Every file that a name stands for, each known to be writable now.
+
+    Raises
+    ------
+    InputError
+        As `write_waveforms`, but for a missing extra.
+    """
+    place = Path(path)
+    require_known_ending(place)
+    places = [place]
+    if place.suffix.lower() == ".csv" and with_results:
+        places.append(place.with_name(f"{place.stem}_results{place.suffix}"))
+    for each in places:
+        _require_replaceable(each, _KINDS[place.suffix.lower()])
     return places
 
 
@@ -297,6 +310,8 @@ def _require_replaceable(place: Path, kind: _Kind) -> None:
     """A slip of the hand must not replace a motor file by waveforms."""
     if not place.parent.is_dir():
         raise InputError(str(place), "lies in no existing folder", "make the folder first")
+    if not os.access(place.parent, os.W_OK):
+        raise InputError(str(place), "lies in a folder that is read-only", "choose another place")
     if not place.exists():
         return
     try:

@@ -37,10 +37,8 @@ def layouts(
 
     from camring.interfaces.layouts.ranking import show, write
     from camring.interfaces.layouts.study import layouts
-    from camring.interfaces.plots import require_matplotlib
     from camring.interfaces.progress import SearchProgress
 
-    require_matplotlib()
     found = layouts(
         motor,
         out,

@@ -51,9 +51,9 @@ def simulate(
     from camring.interfaces.simulation_output import document, print_table
 
     if waveforms is not None:
-        from camring.interfaces.waveform_file import require_known_ending
+        from camring.interfaces.waveform_file import places_of
 
-        require_known_ending(waveforms)
+        places_of(waveforms)
     file = read_motor_file(motor)
     found = simulated(file, accuracy=accuracy)
     if waveforms is not None:

@@ -44,10 +44,12 @@ def worst(each: Studied, name: str) -> float:
 
 def write(found: Studies) -> None:
     """ranking.csv and ranking.svg in the folder, in place of those of an earlier run."""
-    from camring.interfaces.plots import layouts_ranked, save
+    from camring.interfaces.plots import drawable
 
     write_safely(found.folder / TABLE, csv_text(found).encode("utf-8"))
-    if any(each.best for each in found.ranked):
+    if any(each.best for each in found.ranked) and drawable():
+        from camring.interfaces.plots import layouts_ranked, save
+
         save(layouts_ranked(found), found.folder / PICTURE)
 
 

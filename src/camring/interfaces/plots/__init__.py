@@ -48,6 +48,7 @@ _HOMES = {
 
 __all__ = [
     "cam",
+    "drawable",
     "efficiency_map",
     "fitted",
     "front",
@@ -86,6 +87,18 @@ def require_matplotlib() -> None:
         raise MissingPlotExtra(
             'Pictures need matplotlib, which is not installed; pip install "camring[plot]".'
         ) from error
+
+
+def drawable() -> bool:
+    """Whether a picture can be drawn; if not, says so on stderr, as tables need none."""
+    try:
+        require_matplotlib()
+    except MissingPlotExtra as error:
+        import typer
+
+        typer.echo(f"The picture is left out. {error}", err=True)
+        return False
+    return True
 
 
 def __getattr__(name: str) -> Any:

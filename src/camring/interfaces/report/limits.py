@@ -14,7 +14,13 @@ from camring.objective.constraints import (
 )
 from camring.physics.system import System
 
-__all__ = ["constraints_of"]
+__all__ = ["MARGIN_BASES", "constraints_of"]
+
+MARGIN_BASES = (
+    "A margin is a share of its limit; that of the lowest pressure a share of supply less return "
+    "pressure, of the contact force a share of what that presses a piston with, of the chamber "
+    "volume a share of the dead volume."
+)
 
 
 @dataclass(frozen=True)
