@@ -151,9 +151,10 @@ def slopes_in_lanes(
     cycles: tuple[LaneCycle, ...],
     look: LanesLook,
     first: int | None = None,
+    results: tuple[str, ...] = (),
 ) -> ManySlopes:
     """`objective.lanes.slopes_of_designs` of what `judge_and_keep` solved, as NumPy arrays."""
-    return jax.device_get(_slopes(space, system, points, cycles, goal, look, first))
+    return jax.device_get(_slopes(space, system, points, cycles, goal, look, first, results))
 
 
 _designs = _program(designs_in_lanes)
