@@ -143,9 +143,7 @@ def trade_off(
     say(f"Judging {screened} designs for starts.")
     starts = _starts(model, screened)
     say(f"Tracing the front from {len(starts)} starts.")
-    front = trace_front(
-        FrontProblem(model.values, model.slopes), starts, points, lambda found: say(f"{found}")
-    )
+    front = trace_front(FrontProblem(model.values, model.slopes), starts, points, _counted(say))
     if not front.points:
         raise NoFront(
             f"No design of {file.path} keeps every limit: none of {screened} screened ones nor of "
@@ -171,6 +169,19 @@ def trade_off(
         search_seconds=searched - began,
         check_seconds=time.monotonic() - searched,
     )
+
+
+def _counted(say: Say) -> Callable[[int], None]:
+    """Says how many compromises have been found, whenever there are ten more."""
+    told = 0
+
+    def found(count: int) -> None:
+        nonlocal told
+        if count >= told + 10:
+            told = count
+            say(f"{count} compromises found.")
+
+    return found
 
 
 def _volume(losses: Float[np.ndarray, "compromise result"]) -> float:
