@@ -1,16 +1,18 @@
-"""camring's front of the wheel motor beside NSGA-II's, for the same processor time.
+"""camring's front of a motor beside NSGA-II's, for the same processor time and the same time.
 
     python -m benchmarks.search.fronts [--motor FILE] [--of torque_ripple,efficiency]
-        [--seeds 5] [--times 0.5 1] [--points 50]
+        [--seeds 3] [--points 50]
 
 NSGA-II (pymoo) evaluates its populations by `evaluate_many`, the fastest there is here, on
-one thread, keeps the same limits drawn in by `SAFETY`, and gets so many times the
-processor time of camring's search. As many designs of its front as camring's has, evenly
-spread, are then looked at as camring's are: at finer resolution, where what breaks a limit
-is left out. The hypervolume of each front
-is its share of one box about all of them. Kept after every seed, in
-benchmarks/results/search/fronts_POINTS.json with every design's values: stopped, it goes
-on where it was. The picture is docs/pictures/search_fronts.
+all cores and at search or at final resolution, begins with the given design among Sobol's,
+and keeps the same limits drawn in by `SAFETY`. Its front is taken when it has had the
+processor time of camring's search, when it has had the time by the clock, and, at search
+resolution from the first seed, at three times the processor time. As many designs of it as
+camring's has, evenly spread, are then looked at as camring's are: at finer resolution, where
+what breaks a limit is left out. The hypervolume of each front is its share of one box about
+all of them. Kept after every run
+in benchmarks/results/search/fronts.json with every design's values: stopped, it goes on
+where it was. The picture of two results is docs/pictures/fronts_MOTOR.
 """
 
 import argparse
@@ -24,8 +26,10 @@ from camring.interfaces.compilation_cache import keep_compiled_programs
 
 ROOT = Path(__file__).parents[2]
 RESULTS = ROOT / "benchmarks" / "results" / "search" / "fronts.json"
-PICTURE = ROOT / "docs" / "pictures" / "search_fronts"
+PICTURES = ROOT / "docs" / "pictures"
 POPULATION = 128
+LONGER = 3.0  # times camring's processor time, at the last look
+LOOKS = ("search", "final")
 MARGIN = 0.1  # of the box beyond the worst corner of the best front known
 
 
@@ -34,10 +38,12 @@ class Found:
     """Losses (smaller is better) of the designs of one front, and what it took."""
 
     name: str
-    seconds: float
+    processor: float
+    clock: float
     evaluations: int
     losses: list[list[float]]
     dropped: int = 0
+    seed: int = 0
 
 
 def main() -> None:
@@ -45,9 +51,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--motor", type=Path, default=ROOT / "examples" / "wheel_motor.toml")
     parser.add_argument("--of", default="torque_ripple,efficiency")
-    parser.add_argument("--seeds", type=int, default=5)
-    parser.add_argument("--times", type=float, nargs="+", default=[0.5, 1.0])
+    parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--points", type=int, default=50)
+    parser.add_argument("--looks", nargs="+", choices=LOOKS, default=LOOKS)
     parser.add_argument("--out", type=Path, default=RESULTS)
     asked = parser.parse_args()
 
@@ -55,78 +61,93 @@ def main() -> None:
     from camring.interfaces.trade_off import traded_results
 
     file, names = read_motor_file(asked.motor), traded_results(asked.of)
-    kept = asked.out.with_name(f"{asked.out.stem}_{asked.points}.json")
-    fronts = [Found(**each) for each in json.loads(kept.read_text())] if kept.exists() else []
+    study = f"{asked.motor.stem}: {', '.join(names)}; {asked.points}"
+    fronts = kept(asked.out).get(study, [])
     if not fronts:
-        fronts = [ours(file, names, asked.points)]
-        keep(fronts, kept)
+        fronts.append(ours(file, names, asked.points))
+        keep(study, fronts, asked.out)
     own = fronts[0]
-    print(f"camring: {own.seconds:.1f} s of processor time, {len(own.losses)} designs", flush=True)
-    for seed in range((len(fronts) - 1) // len(asked.times), asked.seeds):
-        times = [each * own.seconds for each in asked.times]
-        for found in evolved(file, names, seed, times, asked.points):
-            fronts.append(found)
-            print(f"{found.name}: {found.evaluations} designs judged", flush=True)
-        keep(fronts, kept)
+    print(f"camring: {own.processor:.1f} s of processor time, {own.clock:.1f} s", flush=True)
+    for seed in range(asked.seeds):
+        for look in asked.looks:
+            if any(each.seed == seed and look in each.name for each in fronts[1:]):
+                continue
+            fronts.extend(evolved(file, names, seed, own, look))
+            keep(study, fronts, asked.out)
     shares = volumes([each.losses for each in fronts])
-    print("\n| front | processor s | designs judged | in the front | left out | hypervolume |")
-    print("|---" * 6 + "|")
+    print(
+        "\n| front | seed | processor s | clock s | designs judged | in the front | left out "
+        "| widest gap over mean | hypervolume |"
+    )
+    print("|---" * 9 + "|")
     for each, share in zip(fronts, shares, strict=True):
         print(
-            f"| {each.name} | {each.seconds:.1f} | {each.evaluations} | {len(each.losses)} "
-            f"| {each.dropped} | {share:.4f} |"
+            f"| {each.name} | {each.seed} | {each.processor:.1f} | {each.clock:.1f} "
+            f"| {each.evaluations} | {len(each.losses)} | {each.dropped} "
+            f"| {widest_gap(each.losses):.1f} | {share:.4f} |"
         )
-    try:
-        draw(fronts, names, PICTURE)
-    except ImportError:
-        print('No picture without matplotlib: pip install "camring[plot]" brings it.')
+    if len(names) == 2:
+        draw(fronts, names, PICTURES / f"fronts_{asked.motor.stem}")
 
 
-def keep(fronts: list[Found], path: Path) -> None:
-    """After every seed, so that a run that was stopped goes on where it was."""
+def kept(path: Path) -> dict[str, list[Found]]:
+    """Every study's fronts."""
+    if not path.exists():
+        return {}
+    studies = json.loads(path.read_text())
+    return {study: [Found(**each) for each in fronts] for study, fronts in studies.items()}
+
+
+def keep(study: str, fronts: list[Found], path: Path) -> None:
+    """After every run, so that what was stopped goes on where it was."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps([vars(each) for each in fronts]) + "\n")
+    everything = kept(path) | {study: fronts}
+    plain = {name: [vars(each) for each in found] for name, found in everything.items()}
+    path.write_text(json.dumps(plain, indent=None) + "\n")
 
 
 def ours(file, names, points: int) -> Found:
     """`camring pareto`'s own search; its later looks are not counted."""
     import numpy as np
 
-    from camring.interfaces.trade_off import SENSES, trade_off
+    from camring.interfaces.trade_off import trade_off
+    from camring.interfaces.traded import SENSES
 
     trade_off(file, names, points=3, sample=1)  # compiles
-    marks: list[float] = []
-    started = time.process_time()
+    marks: list[tuple[float, float]] = []
 
     def say(sentence: str) -> None:
-        if sentence.startswith("Looking again"):
-            marks.append(time.process_time())
+        if sentence.startswith(("Judging", "Looking again")):
+            marks.append((time.process_time(), time.monotonic()))
 
     found = trade_off(file, names, points=points, sample=1, say=say)
-    senses = np.array([SENSES[name] for name in names])
-    losses = (found.values * -senses).tolist()
+    processor, clock = np.subtract(marks[1], marks[0])
+    losses = (found.values * [-SENSES[name] for name in names]).tolist()
     count = found.screened + found.evaluations
-    return Found("camring", marks[0] - started, count, losses, len(found.dropped))
+    return Found("camring", processor, clock, count, losses, len(found.dropped))
 
 
-def evolved(file, names, seed: int, seconds: list[float], points: int):
-    """NSGA-II's front whenever one of these processor times is over."""
+def evolved(file, names, seed: int, own: Found, look_name: str):
+    """NSGA-II's front at camring's processor time, at its time by the clock, and later."""
     import numpy as np
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.core.evaluator import Evaluator
     from pymoo.core.problem import Problem
     from pymoo.problems.static import StaticProblem
 
-    from camring.interfaces.many import evaluate_many
+    from camring.interfaces.many import cores, evaluate_many
     from camring.interfaces.record import SAFETY
-    from camring.interfaces.trade_off import SENSES, shares_of
+    from camring.interfaces.traded import SENSES, shares_of
+    from camring.physics.lane_cycle import LanesLook
     from camring.search.sampling import initial_point
 
     space = file.design_space
     limits = file.goal.constraints.names()
+    look = LanesLook() if look_name == "final" else LanesLook.search()
 
     def judged(points):
-        found = evaluate_many(space, file.system, file.goal, points, threads=1, chunk=POPULATION)
+        chunk = POPULATION // cores()
+        found = evaluate_many(space, file.system, file.goal, points, look, chunk=chunk)
         sound = np.all(np.asarray(found.faults) == 0, axis=0)
         columns = [np.array([getattr(m, n) for m in found.metrics]) for n in names]
         losses = [
@@ -145,20 +166,30 @@ def evolved(file, names, seed: int, seconds: list[float], points: int):
     problem = Problem(n_var=dimension, n_obj=len(names), n_ieq_constr=len(limits), xl=0.0, xu=1.0)
     algorithm = NSGA2(pop_size=POPULATION, sampling=design)
     algorithm.setup(problem, termination=("n_gen", 10**9), seed=seed, verbose=False)
-    left, count, paused, started = sorted(seconds), 0, 0.0, time.process_time()
-    while left:
+    goals = [
+        ("same processor time", own.processor, 0),
+        ("same time", own.clock, 1),
+        (f"{LONGER:g} times the processor time", LONGER * own.processor, 0),
+    ][: 3 if seed == 0 and look_name == "search" else 2]
+    count, looking = 0, np.zeros(2)
+    started = np.array([time.process_time(), time.monotonic()])
+    fronts = []
+    while goals:
         population = algorithm.ask()
         losses, constraints = judged(population.get("X"))
         Evaluator().eval(StaticProblem(problem, F=losses, G=constraints), population)
         algorithm.tell(infills=population)
         count += len(population)
-        spent = time.process_time() - started - paused
-        if spent >= left[0]:
-            clock = time.process_time()
-            kept, dropped = looked_again(file, names, algorithm.opt, points)
-            paused += time.process_time() - clock
-            yield Found(f"NSGA-II, seed {seed}, {spent:.0f} s", spent, count, kept, dropped)
-            left.pop(0)
+        spent = np.array([time.process_time(), time.monotonic()]) - started - looking
+        for goal in [each for each in goals if spent[each[2]] >= each[1]]:
+            before = np.array([time.process_time(), time.monotonic()])
+            losses, dropped = looked_again(file, names, algorithm.opt, len(own.losses))
+            looking += np.array([time.process_time(), time.monotonic()]) - before
+            name = f"NSGA-II, {look_name} resolution, {goal[0]}"
+            fronts.append(Found(name, *spent, count, losses, dropped, seed))
+            print(f"{name}, seed {seed}: {count} designs judged", flush=True)
+            goals.remove(goal)
+    return fronts
 
 
 def looked_again(file, names, population, count: int) -> tuple[list[list[float]], int]:
@@ -168,7 +199,7 @@ def looked_again(file, names, population, count: int) -> tuple[list[list[float]]
     from camring.interfaces.compiled import assess
     from camring.interfaces.config import parse_motor_file
     from camring.interfaces.evaluator import outcome_of
-    from camring.interfaces.trade_off import SENSES, shares_of
+    from camring.interfaces.traded import SENSES, shares_of
     from camring.physics.resolution import Resolution
     from camring.search.pareto import box_of, evenly_spread
 
@@ -212,30 +243,51 @@ def volumes(fronts: list[list[list[float]]]) -> list[float]:
     ]
 
 
+def widest_gap(losses: list[list[float]]) -> float:
+    """Over the mean gap, along a front of two results in widths of itself; else no number."""
+    import numpy as np
+
+    from camring.search.pareto import box_of, non_dominated
+
+    values = np.array(losses)
+    if len(values) < 3 or values.shape[1] != 2:
+        return math.nan
+    values = values[non_dominated(values)]
+    lowest, width = box_of(values)
+    along = ((values - lowest) / width)[np.argsort(values[:, 0])]
+    gaps = np.linalg.norm(np.diff(along, axis=0), axis=1)
+    return float(np.max(gaps) / np.mean(gaps))
+
+
 def draw(fronts: list[Found], names, path: Path) -> None:
-    """Writes the picture of two results as SVG and PNG."""
+    """Writes the picture of two results as SVG and PNG: same processor time, first seed."""
     import matplotlib
     import numpy as np
     from matplotlib.figure import Figure
 
-    from camring.interfaces.trade_off import SENSES
+    from camring.interfaces.traded import SENSES
 
+    shown = [each for each in fronts if each.seed == 0 and "same time" not in each.name]
     figure = Figure(figsize=(7.5, 5))
     axes = figure.subplots()
-    for front in fronts:
+    colours = ("#D55E00", "#56B4E9", "#0072B2", "#CC79A7", "#009E73")
+    for place, (front, colour) in enumerate(zip(shown, colours, strict=False)):
         values = np.array(front.losses).reshape(-1, 2) * [-SENSES[name] for name in names]
-        own = front.name == "camring"
         axes.plot(
             *(100 * values[np.argsort(values[:, 0])].T),
-            color="#D55E00" if own else "#0072B2",
-            marker="o" if own else ".",
-            markersize=5 if own else 3,
-            linestyle="-" if own else "none",
-            linewidth=1.5,
-            zorder=2 if own else 1,
+            color=colour,
+            marker="os^Dv"[place],
+            markersize=4,
+            linestyle="-" if place == 0 else "none",
+            linewidth=1,
+            zorder=len(shown) - place,
             label=front.name,
         )
-    axes.set(xlabel=f"{names[0].replace('_', ' ')}, %", ylabel=f"{names[1].replace('_', ' ')}, %")
+    axes.set(
+        xscale="log",
+        xlabel=f"{names[0].replace('_', ' ')}, %",
+        ylabel=f"{names[1].replace('_', ' ')}, %",
+    )
     axes.legend(fontsize=7, frameon=False)
     figure.tight_layout()
     with matplotlib.rc_context({"svg.hashsalt": "camring"}):

@@ -4,12 +4,16 @@ import numpy as np
 import pytest
 from motor_files import SOUND, without_table
 
+from camring.interfaces.compiled import assess
 from camring.interfaces.config import parse_motor_file
 from camring.interfaces.errors import InputError
+from camring.interfaces.evaluator import applied, outcome_of
 from camring.interfaces.sensitivities import sensitivities
-from camring.interfaces.trade_off import SENSES, _Traded, trade_off, traded_results
+from camring.interfaces.sloped_designs import _InLanes, _OneByOne
+from camring.interfaces.trade_off import trade_off, traded_results
 from camring.interfaces.trade_off_output import require_place
-from camring.objective.slopes import results_used
+from camring.interfaces.traded import Traded
+from camring.physics.resolution import Resolution
 
 
 def test_names_of_results():
@@ -50,7 +54,7 @@ def test_a_folder_that_is_there(tmp_path):
 
 def test_maxima_count_at_the_worst_point_and_means_by_weight():
     text = SOUND.replace("weight = 0.6", "weight = 0.75").replace("weight = 0.4", "weight = 0.25")
-    model = _Traded(parse_motor_file(text), ("max_contact_stress", "efficiency"))
+    model = Traded(parse_motor_file(text), ("max_contact_stress", "efficiency"))
     results = [
         {"max_contact_stress": 2.0, "efficiency": 0.8},
         {"max_contact_stress": 1.0, "efficiency": 0.4},
@@ -58,17 +62,60 @@ def test_maxima_count_at_the_worst_point_and_means_by_weight():
     assert model.summed(results) == pytest.approx([2.0, 0.7])
 
 
-@pytest.mark.parametrize(
-    "names", [("torque_ripple", "efficiency"), ("jerk_objective", "efficiency", "torque_ripple")]
-)
-def test_slopes_of_what_is_traded_are_central_differences(names):
-    """With results that the goal uses anyway, so that nothing is compiled for the test."""
+TRADED = ("efficiency", "jerk_objective", "max_contact_stress")
+
+
+def near(model, count):
+    """Points about the given design."""
+    centre = model.space.locate(model.file.system) * 0.9 + 0.02
+    return centre + 0.02 * np.random.default_rng(1).standard_normal((count, len(centre)))
+
+
+def test_slopes_of_what_is_traded_are_central_differences():
+    """More points than one call takes, so that the parts of a batch are held apart."""
+    model = Traded(parse_motor_file(SOUND), TRADED)
+    points = near(model, 10)
+    directions = np.random.default_rng(2).standard_normal(points.shape)
+    steps = 1e-3 * directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    for kind, (plus, minus, slopes) in enumerate(
+        zip(
+            model.values(points + steps),
+            model.values(points - steps),
+            model.slopes(points),
+            strict=True,
+        )
+    ):
+        found = np.einsum("pkd,pd->pk", slopes, steps)
+        scale = np.max(np.abs(found), axis=0)
+        agree = np.abs(found - (plus - minus) / 2) < 2e-2 * scale + 1e-9
+        assert np.mean(agree) > (0.99 if kind == 0 else 0.9)  # a limit may have a kink on the way
+
+
+def test_a_batch_says_what_each_design_says_alone():
+    """To what docs/notes/batch.md states of final resolution."""
+    model = Traded(parse_motor_file(SOUND), TRADED)
+    points = near(model, 3)
+    losses, limits = model.values(points)
+    for point, loss, limit in zip(points, losses, limits, strict=True):
+        system = applied(model.space, model.file.system, point)
+        alone = outcome_of(assess(system, model.file.goal, Resolution()))
+        np.testing.assert_allclose(-model.senses * model.summed(alone.results), loss, rtol=5e-4)
+        names = model.file.goal.constraints.names()
+        np.testing.assert_allclose([alone.constraints[n] for n in names], limit, atol=1e-3)
+
+
+def test_designs_without_lanes_say_the_same_in_the_same_order():
+    """Slopes too, so that each limit goes with its own; stresses are coarser in lanes."""
     file = parse_motor_file(SOUND)
-    assert set(names) <= set(results_used(file.goal)) & set(SENSES)
-    model = _Traded(file, names)
-    point = model.space.locate(file.system) * 0.9 + 0.02
-    direction = np.random.default_rng(2).standard_normal(model.space.dimension)
-    step = 1e-3 * direction / np.linalg.norm(direction)
-    rise = (model.values(point + step)[0] - model.values(point - step)[0]) / 2
-    found = model.slopes(point)[0] @ step
-    np.testing.assert_allclose(found, rise, rtol=2e-2, atol=1e-9)
+    given = file.system, file.goal, file.design_space, TRADED
+    points = near(Traded(file, TRADED), 2)
+    together, alone = (road(*given) for road in (_InLanes, _OneByOne))
+    for side_by_side, one_by_one in zip(together.values(points), alone.values(points), strict=True):
+        np.testing.assert_allclose(side_by_side, one_by_one, rtol=5e-4, atol=1e-3)
+    of_both = zip(together.slopes(points)[1:], alone.slopes(points)[1:], strict=True)
+    for side_by_side, one_by_one in of_both:
+        length, other = (np.linalg.norm(each, axis=-1) for each in (side_by_side, one_by_one))
+        steep = other > 1e-6  # what no coordinate changes has a direction of rounding
+        cosine = np.sum(side_by_side * one_by_one, axis=-1)[steep] / (length * other)[steep]
+        assert np.all(cosine > 0.99)
+        assert np.all(length[~steep] < 1e-6)

@@ -71,7 +71,7 @@ def schaffer():
         x = 4 * point[0] - 1
         return 4 * np.array([[2 * x], [2 * (x - 2)]]), np.zeros((0, 1))
 
-    return FrontProblem(values, slopes)
+    return FrontProblem.one_by_one(values, slopes)
 
 
 def fonseca(dimension=3):
@@ -88,7 +88,7 @@ def fonseca(dimension=3):
         rows = [16 * (1 - f) * (x - s * centre) for f, s in zip(found, (1, -1), strict=True)]
         return np.array(rows), np.zeros((0, dimension))
 
-    return FrontProblem(values, slopes)
+    return FrontProblem.one_by_one(values, slopes)
 
 
 def test_schaffers_front_is_found_evenly():
@@ -113,7 +113,7 @@ def test_fonsecas_front_is_found_where_it_is_bent():
 def test_three_objectives_and_a_limit():
     """Squared distances from the corners of a triangle, where x may not exceed 0.6."""
     corners = np.array([[0.2, 0.2], [0.8, 0.2], [0.5, 0.8]])
-    limited = FrontProblem(
+    limited = FrontProblem.one_by_one(
         lambda x: (np.sum((x - corners) ** 2, axis=1), np.array([x[0] - 0.6])),
         lambda x: (2 * (x - corners), np.array([[1.0, 0.0]])),
     )
@@ -126,7 +126,7 @@ def test_three_objectives_and_a_limit():
 
 
 def test_without_a_feasible_design_there_is_no_front():
-    never = FrontProblem(
+    never = FrontProblem.one_by_one(
         lambda x: (np.array([x[0], -x[0]]), np.array([1.0])),
         lambda x: (np.array([[1.0], [-1.0]]), np.array([[0.0]])),
     )

@@ -62,17 +62,18 @@ class _InLanes:
 
     def __init__(self, file: MotorFile, about: ToleratedSpace, points: Points) -> None:
         self._given = about, file.system, file.goal, points
+        self._names = file.goal.constraints.names()  # in their order; a dictionary's is another
         self._cycles, found = judge_and_keep(*self._given, LanesLook())
         sound = np.all(np.asarray(found.faults) == 0, axis=0)
         self.scattered = Scattered(
             np.where(sound, found.physical_objective, np.nan),
-            np.stack([np.asarray(each) for each in found.constraints.values()]),
+            np.stack([np.asarray(found.constraints[name]) for name in self._names]),
         )
 
     def slopes(self, first: int) -> ScatteredSlopes:
         found = slopes_in_lanes(*self._given, self._cycles, LanesLook(), first)
         return ScatteredSlopes(
-            np.asarray(found.objective), np.stack(list(found.constraints.values()))
+            np.asarray(found.objective), np.stack([found.constraints[n] for n in self._names])
         )
 
 
@@ -81,12 +82,13 @@ class _OneByOne:
 
     def __init__(self, file: MotorFile, about: ToleratedSpace, points: Points) -> None:
         self._about, self._file, self._points = about, file, points
+        self._names = file.goal.constraints.names()
         self._solved = [solve(applied(about, file.system, each), file.goal) for each in points]
         judged = [jax.device_get(judge_solved(each, file.goal)) for each in self._solved]
         sound = [not np.any(each.faults) for each in judged]
         self.scattered = Scattered(
             np.where(sound, [each.physical_objective for each in judged], np.nan),
-            np.array([list(each.constraints.values()) for each in judged]).T,
+            np.array([[each.constraints[n] for n in self._names] for each in judged]).T,
         )
 
     def slopes(self, first: int) -> ScatteredSlopes:
@@ -95,7 +97,7 @@ class _OneByOne:
             jax.device_get(slopes(self._about, self._file.system, point, solved, goal))
             for point, solved in zip(self._points, self._solved, strict=True)
         ]
-        limits = [[each.constraints[name] for name in goal.constraints.names()] for each in found]
+        limits = [[each.constraints[name] for name in self._names] for each in found]
         return ScatteredSlopes(
             np.array([each.objective for each in found]).T[:first],
             np.transpose(limits, (1, 2, 0))[:, :first],

@@ -146,9 +146,11 @@ def slopes_in_lanes(
     cycles: tuple[LaneCycle, ...],
     look: LanesLook,
     first: int | None = None,
+    results: tuple[str, ...] = (),
 ) -> ManySlopes:
     """`objective.lanes.slopes_of_designs` of what `judge_and_keep` solved, as NumPy arrays."""
-    return jax.device_get(_slopes(space, system, jnp.asarray(points), cycles, goal, look, first))
+    at = jnp.asarray(points)
+    return jax.device_get(_slopes(space, system, at, cycles, goal, look, first, results))
 
 
 _designs = motor_program(designs_in_lanes, _OPTIONS)

@@ -14,7 +14,7 @@ from camring.interfaces.errors import CamringError, InputError
 from camring.interfaces.evaluator import applied, outcome_of
 from camring.interfaces.record import best_of
 from camring.interfaces.study_folder import StudyFolder
-from camring.interfaces.trade_off import shares_of
+from camring.interfaces.traded import shares_of
 from camring.objective.slopes import results_used
 from camring.search.multipliers import multipliers
 

@@ -1,31 +1,23 @@
 """The compromises that a motor file allows between two or three results, each looked at again."""
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-import jax
 import numpy as np
 from jaxtyping import Float
 
-from camring.interfaces.compiled import (
-    Solved,
-    assess,
-    judge_solved,
-    slopes_with_results,
-    solve,
-)
-from camring.interfaces.config import MotorFile, missing_design_space, parse_motor_file
+from camring.interfaces.compiled import assess
+from camring.interfaces.config import MotorFile, parse_motor_file
 from camring.interfaces.config.keys import nearest
 from camring.interfaces.errors import CamringError, InputError, quote
-from camring.interfaces.evaluator import applied, outcome_of
+from camring.interfaces.evaluator import outcome_of
 from camring.interfaces.many import evaluate_many
 from camring.interfaces.record import Outcome
+from camring.interfaces.traded import SENSES, Traded
 from camring.interfaces.validation import INDEPENDENT, look_again
-from camring.objective.design_space import DesignSpace
 from camring.physics.resolution import Resolution
-from camring.physics.system import System
 from camring.search.front import Front, FrontProblem, trace_front
 from camring.search.pareto import box_of, evenly_spread, hypervolume, non_dominated
 from camring.search.sampling import generator, sobol
@@ -33,42 +25,13 @@ from camring.search.sampling import generator, sobol
 Point: TypeAlias = Float[np.ndarray, " dimension"]
 Say: TypeAlias = Callable[[str], None]
 
-SENSES = {
-    "torque_ripple": -1,
-    "flow_ripple": -1,
-    "pressure_ripple": -1,
-    "efficiency": 1,
-    "volumetric_efficiency": 1,
-    "hydromechanical_efficiency": 1,
-    "displacement": 1,
-    "mean_torque": 1,
-    "max_contact_stress": -1,
-    "max_pressure": -1,
-    "max_pressure_angle": -1,
-    "max_jerk": -1,
-    "jerk_objective": -1,
-}
-"""What may be traded, and whether more (+1) or less (-1) of it is better."""
-
-WORST = {name for name in SENSES if name.startswith("max_")}
-"""Counted at their worst operating point; the others as the weighted mean of all."""
-
 FEWEST, MOST = 2, 3
 SCREENED = 4096
 STARTS = 12
 FINER_AGREEMENT = 1e-3  # of a result, relative, between search and finer resolution
 INDEPENDENT_AGREEMENT = 1e-3
+SPARE = 1.2  # designs looked at again for each one wanted
 MARGIN = 0.1  # of the front's width beyond its worst corner: where volume is counted from
-
-
-def shares_of(
-    system: System, name: str, values: Float[np.ndarray, " point"]
-) -> Float[np.ndarray, " point"]:
-    """How much of a result each operating point decides: see `WORST`."""
-    if name in WORST:
-        return np.eye(len(values))[int(np.argmax(values))]
-    weights = np.array([float(each.weight) for each in system.operating_points])
-    return weights / weights.sum()
 
 
 class NoFront(CamringError):
@@ -175,16 +138,12 @@ def trade_off(
     NoFront
         When no design keeps every limit.
     """
-    if file.design_space is None:
-        raise missing_design_space(file.path)
-    model = _Traded(file, tuple(names))
+    model = Traded(file, tuple(names))
     began = time.monotonic()
     say(f"Judging {screened} designs for starts.")
     starts = _starts(model, screened)
     say(f"Tracing the front from {len(starts)} starts.")
-    front = trace_front(
-        FrontProblem(model.values, model.slopes), starts, points, lambda found: say(f"{found}")
-    )
+    front = trace_front(FrontProblem(model.values, model.slopes), starts, points, _counted(say))
     if not front.points:
         raise NoFront(
             f"No design of {file.path} keeps every limit: none of {screened} screened ones nor of "
@@ -194,7 +153,7 @@ def trade_off(
     say("Looking again at finer resolution and with SciPy's stiff solver.")
     kept, dropped = _looked_again(model, front, points)
     worst, looked = _independent(model, kept, sample)
-    given, limits = model.values(model.space.locate(file.system))
+    (given,), (limits,) = model.values(model.space.locate(file.system)[None])
     return TradeOff(
         file=file,
         names=model.names,
@@ -212,6 +171,19 @@ def trade_off(
     )
 
 
+def _counted(say: Say) -> Callable[[int], None]:
+    """Says how many compromises have been found, whenever there are ten more."""
+    told = 0
+
+    def found(count: int) -> None:
+        nonlocal told
+        if count >= told + 10:
+            told = count
+            say(f"{count} compromises found.")
+
+    return found
+
+
 def _volume(losses: Float[np.ndarray, "compromise result"]) -> float:
     if len(losses) < FEWEST:
         return 0.0
@@ -220,52 +192,7 @@ def _volume(losses: Float[np.ndarray, "compromise result"]) -> float:
     return hypervolume((losses - lowest) / width, reference) / float(np.prod(reference))
 
 
-class _Traded:
-    """A motor file as objectives to make small."""
-
-    def __init__(self, file: MotorFile, names: tuple[str, ...]) -> None:
-        assert file.design_space is not None
-        self.file, self.names = file, names
-        self.space: DesignSpace = file.design_space
-        self.senses = np.array([SENSES[name] for name in names], dtype=float)
-        self._here: tuple[bytes, Solved] | None = None
-
-    def shares(self, name: str, values: Float[np.ndarray, " point"]) -> Float[np.ndarray, " point"]:
-        return shares_of(self.file.system, name, values)
-
-    def summed(self, results: Sequence[Mapping]) -> Float[np.ndarray, " result"]:
-        """One number for each result from those of all operating points, SI."""
-        columns = [np.array([float(each[name]) for each in results]) for name in self.names]
-        return np.array([self.shares(n, c) @ c for n, c in zip(self.names, columns, strict=True)])
-
-    def _solved(self, point: Point) -> Solved:
-        if self._here is None or self._here[0] != point.tobytes():
-            found = solve(applied(self.space, self.file.system, point), self.file.goal)
-            self._here = point.tobytes(), found
-        return self._here[1]
-
-    def values(self, point: Point) -> tuple[np.ndarray, np.ndarray]:
-        """Losses and constraints; no numbers where the simulation failed."""
-        outcome = outcome_of(judge_solved(self._solved(point), self.file.goal))
-        losses = -self.senses * self.summed(outcome.results)
-        limits = np.array(list(outcome.constraints.values()))
-        return (np.full_like(losses, np.nan) if outcome.failure else losses), limits
-
-    def slopes(self, point: Point) -> tuple[np.ndarray, np.ndarray]:
-        solved, goal = self._solved(point), self.file.goal
-        found, of_results = jax.device_get(
-            slopes_with_results(self.space, self.file.system, point, solved, goal, self.names)
-        )
-        rows = []
-        for name, sense in zip(self.names, self.senses, strict=True):
-            values = np.array([float(getattr(each, name)) for each in solved.metrics])
-            slopes = np.stack([each[name] for each in of_results])
-            rows.append(-sense * self.shares(name, values) @ slopes)
-        limits = [found.constraints[name] for name in goal.constraints.names()]
-        return np.stack(rows), np.stack(limits)
-
-
-def _starts(model: _Traded, screened: int) -> list[Point]:
+def _starts(model: Traded, screened: int) -> list[Point]:
     """The given design, the best of the screened ones in each result, and a spread between."""
     given = model.space.locate(model.file.system)
     if not screened:
@@ -291,10 +218,13 @@ def _starts(model: _Traded, screened: int) -> list[Point]:
     return [given, *points[usable[chosen]]]
 
 
-def _looked_again(model: _Traded, front: Front, count: int) -> tuple[list[Compromise], list[str]]:
+def _looked_again(model: Traded, front: Front, count: int) -> tuple[list[Compromise], list[str]]:
     """Each design as its motor file says it, at finer resolution; beaten ones left out."""
     kept, dropped = [], []
-    for place in front.best():
+    searched_best = np.array(front.best())
+    losses = np.array(front.objectives)[searched_best]
+    lowest, width = box_of(losses)
+    for place in searched_best[evenly_spread((losses - lowest) / width, round(SPARE * count))]:
         point = front.points[place]
         text = model.file.with_design(point.tolist())
         motor = parse_motor_file(text, model.file.path)
@@ -318,7 +248,7 @@ def _looked_again(model: _Traded, front: Front, count: int) -> tuple[list[Compro
     return [kept[place] for place in chosen], dropped
 
 
-def _independent(model: _Traded, kept: Sequence[Compromise], sample: int) -> tuple[float, int]:
+def _independent(model: Traded, kept: Sequence[Compromise], sample: int) -> tuple[float, int]:
     """Largest relative difference to SciPy's solver over designs spread along the front."""
     places = np.unique(np.linspace(0, len(kept) - 1, min(sample, len(kept))).round().astype(int))
     worst = 0.0

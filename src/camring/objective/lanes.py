@@ -5,6 +5,7 @@ the compiler would write the end of the solution anew into every sum over it, at
 the time (`benchmarks/batch_speed.py`).
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import jax
@@ -55,6 +56,8 @@ class ManySlopes(NamedTuple):
     objective: Float[Array, "coordinate lane"]
     """Of `J_phys`, the objective without penalty."""
     constraints: dict[str, Float[Array, "coordinate lane"]]
+    results: tuple[dict[str, Float[Array, "coordinate lane"]], ...]
+    """At each operating point, of the results asked for."""
 
 
 def slopes_of_designs(
@@ -65,6 +68,7 @@ def slopes_of_designs(
     goal: Goal,
     look: LanesLook,
     first: int | None = None,
+    results: Sequence[str] = (),
 ) -> ManySlopes:
     """How objective and constraints of each design change with every coordinate, exactly.
 
@@ -74,16 +78,22 @@ def slopes_of_designs(
         What was solved at the points; nothing is solved again, see `neighbour_lanes`.
     first
         By so many of the first coordinates only; by all unless given.
+    results
+        Names of results, such as `efficiency`, whose slopes are wanted, too.
     """
 
-    def judged(points: Float[Array, "lane coordinate"]) -> tuple[Array, dict[str, Array]]:
+    def judged(
+        points: Float[Array, "lane coordinate"],
+    ) -> tuple[Array, dict[str, Array], tuple[dict[str, Array], ...]]:
         designs = designs_in_lanes(space, system, points)
         near = tuple(
             neighbour_lanes(known.cycle, designs.motor, designs.fluid, point, look)
             for known, point in zip(found, designs.operating_points, strict=True)
         )
-        said = judge_designs(designs, near, summarise_designs(near, goal, look), goal)
-        return said.physical_objective, said.constraints
+        metrics = summarise_designs(near, goal, look)
+        said = judge_designs(designs, near, metrics, goal)
+        wanted = tuple({name: getattr(each, name) for name in results} for each in metrics)
+        return said.physical_objective, said.constraints, wanted
 
     _, linear = jax.linearize(judged, points)
     along = jnp.eye(points.shape[-1])[:first, None]

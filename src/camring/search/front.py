@@ -1,51 +1,69 @@
-"""A front of compromises, traced by descents with exact slopes.
+"""A front of compromises, traced by descents with exact slopes, many abreast.
 
-Each compromise is a descent of its own (Pascoletti and Serafini 1984): from a point
-between two neighbours of the front, straight towards better in all objectives at once,
-as far as the constraints allow. With two objectives the widest gap comes next, so the
-front fills evenly whatever its shape; with three the aims are a lattice between the
-best designs of each objective. A descent starts from the neighbours, so it is short.
+Each compromise is a descent of its own (`scalarised.py`). The first aims lie evenly
+between the best designs of each objective, the next ones in the widest gaps between
+those found, so the front fills evenly whatever its shape. A descent starts from the
+compromises next to its aim, so it is short.
 """
 
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import product
 from typing import TypeAlias
 
 import numpy as np
 from jaxtyping import Float
-from scipy.optimize import minimize
 
+from camring.search.abreast import Ask, Point, Points, Search, walk_abreast
+from camring.search.gaps import between_ends, neighbours, sideways, spacing
 from camring.search.pareto import box_of, non_dominated
+from camring.search.scalarised import ACCURACY, End, Objectives, Scale, descend, descend_along
 from camring.search.threads import one_linear_algebra_thread
 
-Point: TypeAlias = Float[np.ndarray, " dimension"]
 Pair: TypeAlias = tuple[Float[np.ndarray, "..."], Float[np.ndarray, "..."]]
 
-INSIDE = 1e-5  # what a descent keeps of every limit
-STEPS = 25  # of one descent
-ACCURACY = 1e-5  # of an objective in widths of the front
-SMALLEST_GAP = 1e-3  # likewise; nearer neighbours are one compromise
-STARTS_EACH = 2  # descents towards the best of one objective
-SPARE = 1.3  # compromises sought for each one wanted, to choose evenly from
-TRIES = 3  # descents at most for each one sought
+SEATS = 64  # descents abreast
+SMALLEST_GAP = 1e-3  # of the front's width; nearer neighbours are one compromise
+STARTS_EACH = 4  # descents towards the best of one objective
+EVEN = 0.8  # widest gap left, in shares of what equal ones would be
+PLENTY = 2  # compromises for each one wanted, at which gaps are left as they are
+TRIES = 4  # descents into gaps at most, for each compromise wanted
+ATTEMPTS = 3  # at one gap, from different starts
+FIRST = 0.25  # compromises aimed at evenly before gaps are, for each one wanted
+DIVIDE = 6.0  # times the median change of design with objectives: two valleys meet here
+CROSSED = 0.5  # divides at most, for each compromise wanted
 
 
 @dataclass(frozen=True)
 class FrontProblem:
-    """Several objectives to make small on the unit box.
+    """Several objectives to make small on the unit box, at many points at a time.
 
     Attributes
     ----------
     values
-        Objectives, and constraints that hold where at most 0; NaN where a point failed.
+        Of points (point, dimension): objectives (point, objective), and constraints
+        (point, constraint) that hold where at most 0; NaN where a point failed.
     slopes
-        Their gradients, (objective, dimension) and (constraint, dimension).
+        Their gradients, (point, objective, dimension) and (point, constraint, dimension).
     """
 
-    values: Callable[[Point], Pair]
-    slopes: Callable[[Point], Pair]
+    values: Callable[[Points], Pair]
+    slopes: Callable[[Points], Pair]
+
+    @staticmethod
+    def one_by_one(
+        values: Callable[[Point], Pair], slopes: Callable[[Point], Pair]
+    ) -> "FrontProblem":
+        """Of functions that take one point and give arrays without the leading axis."""
+
+        def each(function: Callable[[Point], Pair]) -> Callable[[Points], Pair]:
+            def batch(points: Points) -> Pair:
+                first, second = zip(*map(function, points), strict=True)
+                return np.stack(first), np.stack(second)
+
+            return batch
+
+        return FrontProblem(each(values), each(slopes))
 
 
 @dataclass
@@ -61,21 +79,25 @@ class Front:
     """
 
     points: list[Point] = field(default_factory=list)
-    objectives: list[Float[np.ndarray, " objective"]] = field(default_factory=list)
+    objectives: list[Objectives] = field(default_factory=list)
     evaluations: int = 0
+    sloped: int = 0
+    descents: int = 0
 
     def best(self) -> list[int]:
         """Places of ends that none beats, each compromise once."""
         if not self.points:
             return []
         values = np.array(self.objectives)
+        unbeaten = np.flatnonzero(non_dominated(values))
+        ends = np.argmin(values[unbeaten], axis=0).tolist()
+        rated = values[unbeaten] / box_of(values[unbeaten])[1]
+        apart = np.max(np.abs(rated[:, None] - rated), axis=-1)
         kept: list[int] = []
-        _, width = box_of(values)
-        for place in np.flatnonzero(non_dominated(values)):
-            apart = [np.max(np.abs(values[place] - values[each]) / width) for each in kept]
-            if not apart or min(apart) > SMALLEST_GAP / 10:
-                kept.append(int(place))
-        return kept
+        for place in dict.fromkeys([*ends, *range(len(unbeaten))]):
+            if np.all(apart[place, kept] > SMALLEST_GAP):
+                kept.append(place)
+        return unbeaten[kept].tolist()
 
 
 def trace_front(
@@ -99,219 +121,192 @@ def trace_front(
     -------
     A front without points when no descent has come to a feasible one.
     """
-    tracer = _Tracer(problem, starts)
+    tracer = _Tracer(problem, np.array(starts, dtype=float))
     with one_linear_algebra_thread(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that a step was clipped to the box
         tracer.ends()
-        if not tracer.front.points:
-            return tracer.front
-        wanted = round(SPARE * count)
-        aims = tracer.gaps() if tracer.objectives == 2 else tracer.lattice(wanted)
-        for _, (aim, towards, nearby) in zip(range(TRIES * wanted), aims, strict=False):
-            tracer.compromise(aim, towards, nearby)
-            found = len(tracer.front.best())
-            said(found)
-            if found >= wanted:
-                break
+        if tracer.front.points:
+            tracer.fill(count, said)
     return tracer.front
 
 
-Aim: TypeAlias = tuple[
-    Float[np.ndarray, " objective"], Float[np.ndarray, " objective"], list[Point]
-]
+@dataclass(frozen=True, eq=False)
+class _Aim:
+    place: Objectives
 
 
 class _Tracer:
-    def __init__(self, problem: FrontProblem, starts: Sequence[Point]) -> None:
+    def __init__(self, problem: FrontProblem, starts: Points) -> None:
         self.problem, self.front = problem, Front()
-        self._values: dict[bytes, Pair] = {}
-        self._slopes: dict[bytes, Pair] = {}
-        self._path: list[Point] = []
-        begun = [(np.asarray(start), *self._at(np.asarray(start))) for start in starts]
-        self.starts = [each for each in begun if np.all(np.isfinite(each[1]))]
-        self.objectives = len(begun[0][1])
-        sound = np.array([each[1] for each in self.starts] or [np.zeros(self.objectives)])
-        self.lowest, self.width = box_of(sound)
+        objectives, limits = self._values(starts)
+        sound = np.all(np.isfinite(objectives), axis=1)
+        self.starts, self.begun = starts[sound], objectives[sound]
+        self.broken = np.sum(np.maximum(limits[sound], 0), axis=1)
+        self.objectives = objectives.shape[1]
+        self.scale = Scale(*box_of(self.begun if len(self.begun) else np.zeros((1, 2))))
+        self.pending: list[_Aim] = []
+        self.tried: dict[tuple[int, int], int] = {}
+        self.crossed: set[tuple[int, int]] = set()
 
-    def _at(self, point: Point) -> Pair:
-        key = point.tobytes()
-        if key not in self._values:
-            objectives, limits = self.problem.values(point)
-            self._values[key] = objectives, limits
-            self.front.evaluations += 1
-            if np.all(np.isfinite(objectives)) and np.all(limits <= 0):
-                self._path.append(point)
-        return self._values[key]
+    def _values(self, points: Points) -> Pair:
+        self.front.evaluations += len(points)
+        return self.problem.values(points)
 
-    def _rated(self, point: Point) -> Pair:
-        """Objectives in widths, and constraints; a failed point is bad in all."""
-        objectives, limits = self._at(np.clip(point, 0, 1))
-        if not (np.all(np.isfinite(objectives)) and np.all(np.isfinite(limits))):
-            return np.full(len(objectives), 1e2), np.ones(len(limits))
-        return (objectives - self.lowest) / self.width, limits + INSIDE
+    def _slopes(self, points: Points) -> Pair:
+        self.front.sloped += len(points)
+        return self.problem.slopes(points)
 
-    def _sloped(self, point: Point) -> Pair:
-        point = np.clip(point, 0, 1)
-        objectives, limits = self._at(point)
-        if not (np.all(np.isfinite(objectives)) and np.all(np.isfinite(limits))):
-            shape = len(point)
-            return np.zeros((len(objectives), shape)), np.zeros((len(limits), shape))
-        key = point.tobytes()
-        if key not in self._slopes:
-            self._slopes[key] = self.problem.slopes(point)
-        of_objectives, of_limits = self._slopes[key]
-        return of_objectives / self.width[:, None], of_limits
+    def _walk(self, searches: Iterator[Search | None]) -> None:
+        """Until the iterator is at its end; None from it means that there may be more."""
+        walk_abreast(lambda: next(searches, None), self._values, self._slopes, SEATS)
+
+    def _keep(self, end: End | None) -> bool:
+        self.front.descents += 1
+        if end is None:
+            return False
+        self.front.points.append(end.point)
+        self.front.objectives.append(end.objectives)
+        return True
 
     def ends(self) -> None:
         """The best of each objective alone, then as good as can be in the others."""
+        self._walk(self._alone())
+        if self.front.points:
+            self._settle()
+            self._walk(self._others())
+            self._settle()
+
+    def _alone(self) -> Iterator[Search]:
         for one in range(self.objectives):
-            order = sorted(self.starts, key=lambda each: _rank(each[1][one], each[2]))
-            for start, *_ in order[:STARTS_EACH]:
-                self._descend(start, np.eye(self.objectives)[one])
-        if not self.front.points:
-            return
-        self._settle()
+            weights = np.eye(self.objectives)[one]
+            for place in np.lexsort((self.begun[:, one], self.broken))[:STARTS_EACH]:
+                yield self._descent(self.starts[place], weights)
+
+    def _others(self) -> Iterator[Search]:
+        values = np.array(self.front.objectives)
         for one in range(self.objectives):
-            values = np.array(self.front.objectives)
             best = int(np.argmin(values[:, one]))
-            others = np.full(self.objectives, 1.0)
-            others[one] = 0.0
-            limit = np.full(self.objectives, np.inf)
-            limit[one] = (values[best, one] - self.lowest[one]) / self.width[one] + 10 * ACCURACY
-            self._descend(self.front.points[best], others, limit)
-        self._settle()
+            others = np.where(np.arange(self.objectives) == one, 0.0, 1.0)
+            bound = np.full(self.objectives, np.inf)
+            bound[one] = self.scale.rated(values[best])[one] + 10 * ACCURACY
+            yield self._descent(self.front.points[best], others, bound)
+
+    def _descent(
+        self, start: Point, weights: Objectives, bound: Objectives | None = None
+    ) -> Search:
+        scale = self.scale
+
+        def search(ask: Ask) -> None:
+            self._keep(descend(ask, start, scale, weights, bound))
+
+        return search
 
     def _settle(self) -> None:
-        self.lowest, self.width = box_of(np.array(self.front.objectives)[self.front.best()])
+        self.scale = Scale(*box_of(np.array(self.front.objectives)[self.front.best()]))
 
-    def gaps(self) -> Iterator[Aim]:
-        """The middle of the widest gap that has not been tried, for ever."""
-        tried: set[tuple[int, int]] = set()
-        while True:
-            kept = sorted(self.front.best(), key=lambda place: self.front.objectives[place][0])
-            rated = (np.array(self.front.objectives)[kept] - self.lowest) / self.width
-            length = np.linalg.norm(np.diff(rated, axis=0), axis=1)
-            open_ = [k for k in range(len(kept) - 1) if (kept[k], kept[k + 1]) not in tried]
-            if not open_ or length[widest := max(open_, key=lambda k: length[k])] < SMALLEST_GAP:
+    def fill(self, count: int, said: Callable[[int], None]) -> None:
+        """Compromises between the ends."""
+        self._walk(self._evenly_between(round(FIRST * count)))
+        self._walk(self._between_neighbours(count, said))
+
+    def _evenly_between(self, count: int) -> Iterator[Search]:
+        """Each reached from the two designs known that are most nearly in its direction."""
+        known = np.concatenate([np.array(self.front.objectives), self.begun[self.broken == 0]])
+        points = [*self.front.points, *self.starts[self.broken == 0]]
+        towards = np.ones(self.objectives)
+        for place in between_ends(self._ends(), count):
+            offset = sideways(self.scale.rated(known) - place)
+            for nearest in np.argsort(np.linalg.norm(offset, axis=1))[:2]:
+                yield self._towards(place, towards, points[nearest])
+
+    def _between_neighbours(
+        self, count: int, said: Callable[[int], None]
+    ) -> Iterator[Search | None]:
+        """Into the widest gap that nobody is on his way to; then across divides."""
+        left = TRIES * count
+        while left > 0:
+            kept = self.front.best()
+            said(len(kept))
+            gap = self._widest_gap(kept, count) if len(kept) < PLENTY * count else None
+            ready = gap is None and len(kept) >= count and len(self.crossed) < CROSSED * count
+            divide = self._widest_divide(kept) if ready else None
+            if gap is not None:
+                yield self._middle(*gap)
+            elif divide is not None:
+                yield from self._across(*divide)
+            elif self.pending:
+                yield None
+                continue
+            else:
                 return
-            pair = kept[widest], kept[widest + 1]
-            tried.add(pair)
-            across = rated[widest + 1] - rated[widest]
-            normal = np.abs(across[::-1]) / np.max(np.abs(across))
-            points = [self.front.points[place] for place in pair]
-            middle = (rated[widest] + rated[widest + 1]) / 2
-            yield middle, np.maximum(normal, 1e-3), [np.mean(points, axis=0), *points]
+            left -= 1
 
-    def lattice(self, count: int) -> Iterator[Aim]:
-        """Shares of the best designs of each objective, as many as are wanted or more."""
+    def _across(self, one: int, other: int) -> Iterator[Search]:
+        """Either valley followed beyond the divide, where it may still be the deeper one."""
+        self.crossed.add((one, other))
+        a, b = (self.scale.rated(self.front.objectives[place]) for place in (one, other))
+        yield self._towards(a, _normal(a, b), self.front.points[other])
+        yield self._towards(b, _normal(a, b), self.front.points[one])
+
+    def _ends(self) -> Float[np.ndarray, "objective objective"]:
         values = np.array(self.front.objectives)
-        corners = (values[np.argmin(values, axis=0)] - self.lowest) / self.width
-        steps = 1
-        while (steps + 1) * (steps + 2) // 2 < count:
-            steps += 1
-        shares = [each for each in product(range(steps + 1), repeat=3) if sum(each) == steps]
-        for share in shares:
-            middle = np.array(share) @ corners / steps
-            rated = (np.array(self.front.objectives) - self.lowest) / self.width
-            offset = rated - middle
-            sideways = offset - offset.mean(axis=1, keepdims=True)
-            nearest = np.argsort(np.linalg.norm(sideways, axis=1))[:2]
-            yield middle, np.ones(3), [self.front.points[place] for place in nearest]
+        return self.scale.rated(values[np.argmin(values, axis=0)])
 
-    def compromise(
-        self,
-        aim: Float[np.ndarray, " objective"],
-        towards: Float[np.ndarray, " objective"],
-        nearby: Sequence[Point],
-    ) -> None:
-        """Descend from the first start that leads to a feasible end."""
-        for start in nearby:
-            if self._descend_along(start, aim, towards):
-                return
+    def _widest_divide(self, kept: Sequence[int]) -> tuple[int, int] | None:
+        """Neighbours of which the designs differ far more than objectives let expect."""
+        rated = self.scale.rated(np.array(self.front.objectives)[kept])
+        points = np.array(self.front.points)[kept]
+        one, other = np.array(neighbours(rated)).reshape(-1, 2).T
+        change = np.linalg.norm(points[other] - points[one], axis=1)
+        change /= np.linalg.norm(rated[other] - rated[one], axis=1)
+        for place in np.argsort(-change):
+            if change[place] < DIVIDE * np.median(change):
+                break
+            pair = kept[one[place]], kept[other[place]]
+            if pair not in self.crossed:
+                return pair
+        return None
 
-    def _descend(
-        self,
-        start: Point,
-        weights: Float[np.ndarray, " objective"],
-        limit: Float[np.ndarray, " objective"] | None = None,
-    ) -> None:
-        """Down a weighted sum; `limit` on objectives where finite."""
-        held = np.isfinite(limit) if limit is not None else np.zeros(self.objectives, bool)
-        bound = limit[held] if limit is not None else np.zeros(0)
+    def _widest_gap(self, kept: Sequence[int], count: int) -> tuple[int, int] | None:
+        """Two neighbours with nobody on his way between them; None when all are near enough."""
+        rated = self.scale.rated(np.array(self.front.objectives)[kept])
+        aimed = np.array([each.place for each in self.pending]).reshape(-1, self.objectives)
+        enough = max(SMALLEST_GAP, EVEN * spacing(rated, count))
+        widest, found = enough, None
+        for a, b in neighbours(np.concatenate([rated, aimed])):
+            if max(a, b) >= len(kept) or self.tried.get((kept[a], kept[b]), 0) >= ATTEMPTS:
+                continue
+            width = float(np.linalg.norm(rated[b] - rated[a]))
+            if width > widest:
+                widest, found = width, (kept[a], kept[b])
+        return found
 
-        def room(point: Point) -> Float[np.ndarray, " limit"]:
-            rated, limits = self._rated(point)
-            return -np.concatenate([rated[held] - bound, limits])
+    def _middle(self, one: int, other: int) -> Search:
+        """Between two neighbours; from their mean at first, then from either of them."""
+        attempt = self.tried.get((one, other), 0)
+        self.tried[one, other] = attempt + 1
+        points = [self.front.points[place] for place in (one, other)]
+        a, b = (self.scale.rated(self.front.objectives[place]) for place in (one, other))
+        start = [np.mean(points, axis=0), *points][attempt]
+        return self._towards((a + b) / 2, _normal(a, b), start)
 
-        def room_slopes(point: Point) -> Float[np.ndarray, "limit dimension"]:
-            rated, limits = self._sloped(point)
-            return -np.concatenate([rated[held], limits])
+    def _towards(self, place: Objectives, towards: Objectives, start: Point) -> Search:
+        scale, aim = self.scale, _Aim(place)
+        self.pending.append(aim)
 
-        self._path = [start]
+        def search(ask: Ask) -> None:
+            self._keep(descend_along(ask, start, scale, place, towards))
+            self.pending.remove(aim)
 
-        def merit(point: Point) -> float:
-            rated, _ = self._rated(point)
-            return float(weights @ rated) + 1e3 * float(np.sum(np.maximum(rated[held] - bound, 0)))
-
-        found = minimize(
-            lambda point: float(weights @ self._rated(point)[0]),
-            start,
-            jac=lambda point: weights @ self._sloped(point)[0],
-            bounds=[(0.0, 1.0)] * len(start),
-            constraints={"type": "ineq", "fun": room, "jac": room_slopes},
-            method="SLSQP",
-            options={"maxiter": STEPS, "ftol": ACCURACY},
-        )
-        self._keep(found.x, merit)
-
-    def _descend_along(
-        self,
-        start: Point,
-        aim: Float[np.ndarray, " objective"],
-        towards: Float[np.ndarray, " objective"],
-    ) -> bool:
-        """As far below the aim as the worst of all objectives can come."""
-
-        def behind(point: Point) -> float:
-            return float(np.max((self._rated(point)[0] - aim) / towards))
-
-        self._path = [start]
-
-        def room(both: Point) -> Float[np.ndarray, " limit"]:
-            rated, limits = self._rated(both[:-1])
-            return np.concatenate([aim + both[-1] * towards - rated, -limits])
-
-        def room_slopes(both: Point) -> Float[np.ndarray, "limit dimension"]:
-            rated, limits = self._sloped(both[:-1])
-            return np.block([[-rated, towards[:, None]], [-limits, np.zeros((len(limits), 1))]])
-
-        last = np.eye(len(start) + 1)[-1]
-        found = minimize(
-            lambda both: float(both[-1]),
-            np.append(start, behind(start)),
-            jac=lambda both: last,
-            bounds=[(0.0, 1.0)] * len(start) + [(None, None)],
-            constraints={"type": "ineq", "fun": room, "jac": room_slopes},
-            method="SLSQP",
-            options={"maxiter": STEPS, "ftol": ACCURACY},
-        )
-        return self._keep(found.x[:-1], behind)
-
-    def _keep(self, end: Point, merit: Callable[[Point], float]) -> bool:
-        """The best feasible point that the descent has passed, if any; often its end."""
-        feasible = [each for each in (np.clip(end, 0, 1), *self._path) if self._feasible(each)]
-        if not feasible:
-            return False
-        best = min(feasible, key=merit)
-        self.front.points.append(best)
-        self.front.objectives.append(self._at(best)[0])
-        return True
-
-    def _feasible(self, point: Point) -> bool:
-        objectives, limits = self._at(point)
-        return bool(np.all(np.isfinite(objectives)) and np.all(limits <= 0))
+        return search
 
 
-def _rank(objective: float, limits: Float[np.ndarray, " constraint"]) -> tuple[float, float]:
-    broken = float(np.sum(np.maximum(limits, 0)))
-    return broken, objective
+def _normal(a: Objectives, b: Objectives) -> Objectives:
+    """Where to from between two neighbours: at right angles in a row, else alike in all."""
+    if len(a) != 2:
+        return np.ones(len(a))
+    across = np.abs(b - a)[::-1]
+    return np.maximum(across / np.max(across), 1e-3)
+
+
+__all__ = ["Front", "FrontProblem", "trace_front"]
