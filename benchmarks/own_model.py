@@ -4,7 +4,7 @@ The stand-in is `examples/own_model.py`: the wheel motor with a drag that our mo
 have. Searched with our simulation's objective to lean on, with the linear model's, and with
 nothing; all from the given motor, without theory's starts.
 
-    python benchmarks/own_model.py [SEEDS] [BUDGET]
+    python benchmarks/own_model.py [SEEDS] [BUDGET] [scbo or bayesian]
 """
 
 import sys
@@ -24,6 +24,7 @@ from camring.interfaces.strategy import FEWEST_TO_LEAN, first_points
 from camring.search.bayesian import Bayesian
 from camring.search.minimise import minimise
 from camring.search.problem import Problem
+from camring.search.scbo import Scbo
 
 MOTOR = Path(__file__).parents[1] / "examples" / "wheel_motor.toml"
 DRAG = 15.0  # as in examples/own_model.py
@@ -51,7 +52,7 @@ def judged(text, point):
     return found, ours.approximation
 
 
-def run(motor_file, leaning, initial, seed, budget):
+def run(motor_file, leaning, initial, seed, budget, search):
     """Best feasible objective after each evaluation."""
     text, space = motor_file.text, motor_file.design_space
     names = motor_file.goal.constraints.names()
@@ -67,9 +68,11 @@ def run(motor_file, leaning, initial, seed, budget):
 
     problem = Problem(space.dimension, len(names), evaluate)
     given = tuple(tuple(point) for point in first_points(motor_file, theory=False))
-    strategy = Bayesian(
-        space.dimension, approximate=approximate, given=given, initial=initial, convergence=None
-    )
+    told = {"approximate": approximate, "given": given, "initial": initial}
+    if search == "scbo":
+        strategy = Scbo(space.dimension, **told)
+    else:
+        strategy = Bayesian(space.dimension, **told, convergence=None)
     history = minimise(problem, strategy, budget, seed).history
     values = [one.objective if one.feasible() else np.inf for one in history]
     return np.minimum.accumulate(values)
@@ -81,7 +84,8 @@ def first_within(best, target):
 
 
 def main():
-    seeds, budget = (int(each) for each in (*sys.argv[1:], "2", "160")[:2])
+    seeds, budget, search = (*sys.argv[1:], *("2", "160", "scbo")[len(sys.argv) - 1 :])
+    seeds, budget = int(seeds), int(budget)
     motor_file = read_motor_file(MOTOR)
     runs = {}
     for (leaning, initial), evaluations in {
@@ -94,7 +98,7 @@ def main():
         for seed in range(seeds):
             began = time.perf_counter()
             key = f"{leaning}, {initial or 'usual'} first points, seed {seed}"
-            runs[key] = run(motor_file, leaning, initial, seed, evaluations)
+            runs[key] = run(motor_file, leaning, initial, seed, evaluations, search)
             took = (time.perf_counter() - began) / evaluations
             print(f"  {key}: {runs[key][-1]:.6g}, {took:.2f} s each", flush=True)
     best = min(values[-1] for values in runs.values())

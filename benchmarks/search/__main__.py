@@ -49,7 +49,7 @@ def main() -> None:
         if time.monotonic() - started > 60 * asked.minutes:
             print(f"{asked.minutes:g} minutes are over; run again to go on.")
             break
-        oracle = Oracle(problem, seed, round(method.share * problem.budget))
+        oracle = Oracle(problem, seed, method.budget(problem))
         clock, processor = time.perf_counter(), time.process_time()
         try:
             with one_linear_algebra_thread():

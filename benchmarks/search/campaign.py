@@ -119,7 +119,10 @@ class Campaign:
         return running_time(traces, self.best_known[problem], target, entry.slopes_cost)
 
     def duels(self, own: Entry, problem: str, target: float) -> list[Duel]:
-        """Beside every rival, on the seeds that both have; the hardest rival first."""
+        """Beside every rival, on the seeds that both have; the hardest rival first.
+
+        Those that got there come before those that did not in their budget.
+        """
         found = []
         mine = {trace.seed for trace in self.runs(own, problem)}
         for rival in self.entries:
@@ -130,7 +133,13 @@ class Campaign:
             rival_time = self.time(rival, problem, target, common)
             if own_time is not None and rival_time is not None:
                 found.append(Duel(rival, own_time, rival_time))
-        return sorted(found, key=lambda duel: -1.0 if math.isnan(duel.ratio) else -duel.ratio)
+
+        def ease(duel: Duel) -> tuple[bool, float]:
+            if duel.rival_time.successes:
+                return False, -duel.ratio
+            return True, -duel.rival_time.longest
+
+        return sorted(found, key=ease)
 
     def lowest(self, problem: str) -> float:
         """The lowest feasible value of any run."""

@@ -7,6 +7,7 @@ from typing import Any
 
 from benchmarks.search import ours, rivals, rivals_learning
 from benchmarks.search.oracle import Oracle
+from benchmarks.search.problem import SearchProblem
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,12 @@ class Method:
     only_motors: bool = False
     cost: int = 0
     share: float = 1.0
+
+    def budget(self, problem: SearchProblem) -> int:
+        """Evaluations of a run on the problem."""
+        if self.cost == 0 and problem.long_budget is not None:
+            return problem.long_budget
+        return round(self.share * problem.budget)
 
 
 def _ours(name: str, **more: Any) -> Method:

@@ -15,13 +15,13 @@ from camring.interfaces.evaluator import MotorEvaluator
 from camring.interfaces.record import SAFETY
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-BUDGET = 200
+BUDGET, LONG_BUDGET = 200, 1000
 BEST = {"wheel": 0.0576141, "winch": 0.0650180, "mill": 0.0380432}
 """Where descents with exact slopes end from every start: `--methods gradient` ends there."""
 
 
 def motor(name: str) -> SearchProblem:
-    """The motor of `examples/NAME_motor.toml`; its own design is the point given."""
+    """The motor of `examples/NAME_motor.toml`; its own design is given, which each seed moves."""
     file = camring.read_motor_file(EXAMPLES / f"{name}_motor.toml")
     space, limits = file.design_space, file.goal.constraints.names()
     assert space is not None
@@ -46,6 +46,7 @@ def motor(name: str) -> SearchProblem:
         (given,),
         best=BEST[name],
         source=f"examples/{name}_motor.toml",
+        long_budget=LONG_BUDGET,
     )
 
 

@@ -7,8 +7,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.search.problem import TOLERANCE, Outcome, Point, SearchProblem
-from camring.search.sampling import initial_point
+from camring.search.sampling import generator, initial_point
 
+MOVED, STREAM = 0.07, 3
+"""Box widths: the normal step by which a seed's given points stand off the problem's, so that a
+method that knows no chance does not make the same run of every seed."""
 NEAR = 1e-4
 """Of the best known value: a run that has come so near has reached every target and ends."""
 
@@ -32,6 +35,11 @@ class Oracle:
         self.problem, self.seed = problem, seed
         self.budget = problem.budget if budget is None else budget
         self.dimension, self.constraint_count = problem.dimension, problem.constraint_count
+        random = generator(seed, 0, STREAM)
+        self.given = tuple(
+            tuple(np.clip(point + MOVED * random.normal(size=len(point)), 0.0, 1.0).tolist())
+            for point in problem.given
+        )
         self.outcomes: list[Outcome] = []
         self.slopes_before: list[int] = []
         self.evaluating, self.processor = 0.0, 0.0  # seconds in the problem, wall and processor
@@ -96,8 +104,7 @@ class Oracle:
 
     def design(self, count: int) -> np.ndarray:
         """The first points of this seed: those given, then scrambled Sobol's; as ours draws."""
-        given = self.problem.given
-        points = [initial_point(i, self.dimension, self.seed, given) for i in range(count)]
+        points = [initial_point(i, self.dimension, self.seed, self.given) for i in range(count)]
         return np.array(points)
 
     def ranked(self, points: np.ndarray) -> np.ndarray:

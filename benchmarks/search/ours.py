@@ -30,10 +30,10 @@ def run(oracle: Oracle, name: str, reduced_model: bool = False) -> str:
     """Asks and tells until the strategy stops, which it says why, or the budget is spent."""
     problem = oracle.problem
     guess = problem.approximate if reduced_model else None
-    task = Task(oracle.dimension, oracle.budget, problem.given, guess, oracle.slopes)
+    task = Task(oracle.dimension, oracle.budget, oracle.given, guess, oracle.slopes)
     strategy = strategy_named(name, task)
     if name == "nelder-mead":
-        first = FirstPoints(oracle.dimension, problem.given)
+        first = FirstPoints(oracle.dimension, oracle.given)
         simplex = NelderMead(oracle.dimension)
         strategy = Hybrid((Stage(first, oracle.dimension + 2), Stage(simplex, None)))
     asking = AskTell(strategy, oracle.constraint_count, oracle.seed)

@@ -32,7 +32,8 @@ STYLES = {
     "BoTorch SCBO": ("#009E73", "--"),
 }
 LOWEST, HIGHEST = 1e-4, 10.0
-BAND = ("gradient", "bayesian", "bayesian + model", "COBYQA", "Optuna GP")
+BAND = ("gradient", "scbo", "scbo + model", "SLSQP, differences", "COBYQA")
+LONG = 300  # evaluations; a panel of longer runs has a logarithmic axis
 """Methods whose quartiles are drawn as well; more would hide one another."""
 
 
@@ -73,7 +74,12 @@ def convergence(campaign: Campaign, path: Path) -> None:
                 axes.fill_between(counted, lower, upper, **shade)
         for target in TARGETS:
             axes.axhline(target, color="#BBBBBB", linewidth=0.6, zorder=0)
-        axes.set(yscale="log", ylim=(0.9 * LOWEST, HIGHEST), xlim=(0, None), title=problem)
+        axes.set(yscale="log", ylim=(0.9 * LOWEST, HIGHEST), title=problem)
+        budgets = [t.budget for entry in entries for t in campaign.runs(entry, problem)]
+        if max(budgets) > LONG:
+            axes.set(xscale="log", xlim=(1, max(budgets)))
+        else:
+            axes.set(xlim=(0, None))
     for axes in panels[:, 0]:
         axes.set_ylabel("above the best known, relative")
     for axes in panels[-1]:

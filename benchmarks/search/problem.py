@@ -46,7 +46,9 @@ class SearchProblem:
     approximate
         A cheap approximation of the objective at many points, where there is one.
     given
-        The points that a user has before any search.
+        The points that a user has before any search; a seed's own are near these.
+    long_budget
+        Evaluations of a run by a method that thinks next to nothing; None is `budget`.
     best
         The best value known: of the literature, or for a motor of descents from many starts.
     minimiser
@@ -66,3 +68,4 @@ class SearchProblem:
     best: float = -float("inf")
     minimiser: tuple[float, ...] = ()
     source: str = ""
+    long_budget: int | None = None

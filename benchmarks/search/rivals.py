@@ -42,7 +42,7 @@ def slsqp(oracle: Oracle) -> str:
 
 def _starts(oracle: Oracle) -> Iterator[np.ndarray]:
     """In turn the best one left and the one farthest from all starts so far."""
-    left = list(oracle.ranked(oracle.design(SOBOL_STARTS + len(oracle.problem.given))))
+    left = list(oracle.ranked(oracle.design(SOBOL_STARTS + len(oracle.given))))
     gone: list[np.ndarray] = []
     while left:
         place = 0

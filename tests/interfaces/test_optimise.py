@@ -212,7 +212,7 @@ def test_a_search_that_learns_tells_of_its_surrogates_and_stays_what_it_is(tmp_p
 
 
 def test_an_unknown_method_is_refused(tmp_path):
-    with pytest.raises(camring.InputError, match=r"'slope'.*gradient, bayesian"):
+    with pytest.raises(camring.InputError, match=r"'slope'.*gradient, scbo, bayesian"):
         camring.optimise(EXAMPLE, tmp_path / "study", method="slope")
     assert not (tmp_path / "study").exists()
 

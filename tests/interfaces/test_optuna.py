@@ -68,7 +68,8 @@ def by_minimise(strategy, count, seed=3):
 
 
 @pytest.mark.parametrize(
-    ("strategy", "count"), [("cma-es", 40), ("nelder-mead", 40), ("bayesian", 6)]
+    ("strategy", "count"),
+    [("cma-es", 40), ("nelder-mead", 40), ("cobyqa", 20), ("scbo", 6), ("bayesian", 6)],
 )
 def test_optuna_proposes_the_points_of_minimise_bit_for_bit(strategy, count):
     ours = by_minimise(strategy, count)

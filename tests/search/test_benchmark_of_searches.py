@@ -1,11 +1,14 @@
 """The benchmark's own arithmetic, and that its problems are those of the literature."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from benchmarks.search.campaign import Campaign
 from benchmarks.search.measures import best_so_far, quartiles, reached_after, running_time
+from benchmarks.search.methods import METHODS
 from benchmarks.search.oracle import Oracle, Reached, Spent
 from benchmarks.search.problem import Outcome, SearchProblem
 from benchmarks.search.published import PUBLISHED
@@ -90,6 +93,32 @@ def test_a_point_known_already_costs_nothing_and_the_budget_holds():
     with pytest.raises(Spent):
         oracle.ranked(np.random.default_rng(0).random((5, 2)))
     assert len(oracle.outcomes) == 5
+
+
+def test_each_seed_has_a_given_point_of_its_own_and_the_same_for_every_method():
+    problem = replace(parabola(), given=((0.5, 0.98),))
+    first, again, other = (Oracle(problem, seed).given[0] for seed in (0, 0, 1))
+    assert first == again != other
+    assert all(0 <= value <= 1 for value in (*first, *other))
+    assert Oracle(problem, 0).design(3)[0].tolist() == list(first)
+
+
+def test_methods_that_think_next_to_nothing_get_the_long_budget():
+    problem = replace(parabola(), long_budget=50)
+    assert METHODS["COBYQA"].budget(problem) == 50
+    assert METHODS["scbo"].budget(problem) == 5
+    assert METHODS["COBYQA"].budget(parabola()) == 5
+
+
+def test_the_hardest_rival_is_one_that_got_there():
+    def run(method, objective):
+        return replace(trace(objective), method=method, problem="wheel")
+
+    runs = [run("scbo", [3.0, 1.0]), run("COBYQA", [5.0, 4.0, 1.0]), run("Optuna GP", [5.0, 4.0])]
+    campaign = Campaign.of(runs)
+    hardest, other = campaign.duels(campaign.ours[0], "wheel", 0.0)
+    assert (hardest.rival.name, hardest.ratio) == ("COBYQA", 2 / 3)
+    assert (other.rival.name, other.ratio) == ("Optuna GP", 1.0)
 
 
 def test_a_run_ends_at_the_best_known_value():

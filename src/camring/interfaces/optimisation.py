@@ -88,7 +88,8 @@ def optimise(
     budget, seed
         Model evaluations in all, and where chance comes from; else as in the file.
     method
-        "gradient" or "bayesian"; else as in the file.
+        "gradient", "scbo" or "bayesian"; else as in the file, and "scbo" where a program
+        without slopes judges.
     theory
         Whether the search begins also with what theory recommends.
     evaluator, timeout

@@ -55,7 +55,7 @@ def minimise_function(
     *,
     budget: int = 100,
     seed: int = 0,
-    method: str = "bayesian",
+    method: str = "scbo",
     given: Sequence[Mapping[str, float]] = (),
     timeout: float | None = None,
     executor: Executor | None = None,
@@ -80,7 +80,7 @@ def minimise_function(
     budget
         Evaluations in all.
     method
-        "bayesian", "cma-es", "nelder-mead" or "scbo".
+        "bayesian", "cma-es", "cobyqa", "nelder-mead" or "scbo".
     given
         Designs to begin with, name to number.
     timeout

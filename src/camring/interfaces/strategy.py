@@ -6,14 +6,15 @@ import numpy as np
 from jaxtyping import Float
 
 from camring.interfaces.config import MotorFile, missing_design_space
-from camring.interfaces.config.goal_tables import GRADIENT
+from camring.interfaces.config.goal_tables import GRADIENT, SCBO
 from camring.interfaces.evaluator import MotorEvaluator
 from camring.interfaces.own_evaluator import OwnEvaluator
 from camring.objective.theory import theory_designs
 from camring.search.bayesian import Bayesian
 from camring.search.gradient import GradientSearch
 from camring.search.problem import AbstractStrategy
-from camring.search.strategies import then_simplex
+from camring.search.scbo import Scbo
+from camring.search.strategies import then_descent
 
 MOST_THEORY_DESIGNS = 6
 FEWEST_TO_LEAN = 8
@@ -42,7 +43,7 @@ def strategy_for(
     budget: int,
     batch: int = 1,
 ) -> AbstractStrategy:
-    """Descent by exact slopes, or Bayesian search, in batches, and then a simplex."""
+    """Descent by exact slopes, or a search that learns from evaluations, in batches."""
     space = motor_file.design_space
     assert space is not None
     settings = motor_file.search
@@ -50,14 +51,17 @@ def strategy_for(
     if method == GRADIENT:
         assert isinstance(evaluator, MotorEvaluator), "a user's own program has no slopes"
         return GradientSearch(space.dimension, evaluator.slopes, given)
+    initial = FEWEST_TO_LEAN if isinstance(evaluator, OwnEvaluator) else None
+    if method == SCBO:
+        return Scbo(space.dimension, evaluator.approximate, given, initial, batch)
     learning = Bayesian(
         dimension=space.dimension,
         approximate=evaluator.approximate,
         given=given,
-        initial=FEWEST_TO_LEAN if isinstance(evaluator, OwnEvaluator) else None,
+        initial=initial,
         mode="penalised" if settings.mode == "penalised" else "separate",
         penalty_weight=motor_file.goal.weights.penalty,
         kappa=settings.kappa,
         batch=batch,
     )
-    return then_simplex(learning, budget, settings.refinement)
+    return then_descent(learning, budget, settings.refinement)

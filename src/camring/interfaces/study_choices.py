@@ -8,7 +8,7 @@ from pathlib import Path
 from camring.interfaces.config import MotorFile
 from camring.interfaces.config.entries import Unfit
 from camring.interfaces.config.evaluator_table import USUAL_TIMEOUT, EvaluatorTable
-from camring.interfaces.config.goal_tables import BAYESIAN, GRADIENT, METHODS
+from camring.interfaces.config.goal_tables import GRADIENT, METHODS, SCBO
 from camring.interfaces.errors import InputError, quote
 from camring.interfaces.own_command import OwnCommand
 from camring.interfaces.own_fmu import command_for
@@ -46,7 +46,7 @@ def command_of(
 
 
 def method_of(motor_file: MotorFile, method: str | None, command: OwnCommand | None) -> str:
-    """How designs are sought; a program without slopes leaves only one way.
+    """How designs are sought; without slopes a trust region unless another is named.
 
     Raises
     ------
@@ -61,9 +61,10 @@ def method_of(motor_file: MotorFile, method: str | None, command: OwnCommand | N
         raise InputError(
             "method",
             f"is {quote(method)}, which needs slopes that `{command}` does not give",
-            f"leave it out, or choose {BAYESIAN}",
+            f"leave it out, or choose {SCBO}",
         )
-    return BAYESIAN
+    chosen = motor_file.search.method if method is None else method
+    return SCBO if chosen == GRADIENT else chosen
 
 
 def _words(evaluator: str | Sequence[str]) -> tuple[str, ...]:

@@ -24,6 +24,7 @@ from camring.search.problem import (
     Stop,
     best_of,
 )
+from camring.search.replay import Unknown, on_grid
 from camring.search.sampling import initial_point
 from camring.search.threads import one_linear_algebra_thread
 
@@ -33,7 +34,6 @@ Slopes: TypeAlias = Callable[
 ]
 
 INSIDE = 2e-7  # what a descent keeps of every limit: it may end `accuracy` beyond it
-GRID = 2.0**-28  # box widths; nearer points share one evaluation, or vain steps would never end
 SOBOL_STARTS = 8
 ROUNDS = 3  # of one descent: after a round that did not converge it begins anew where it is
 STEPS = 100
@@ -43,13 +43,6 @@ PROGRESS = 1e-6  # of the objective, or of the violation: what counts as a gain
 
 class _Stalled(Exception):
     """A descent goes on without getting anywhere."""
-
-
-class _Unknown(Exception):
-    """A descent has come to a point that nobody has evaluated."""
-
-    def __init__(self, point: Point) -> None:
-        self.point = point
 
 
 @dataclass(frozen=True)
@@ -153,7 +146,7 @@ class GradientSearch(AbstractStrategy):
 
     def _descended(self, history: Sequence[Evaluation], start: int) -> Point | Evaluation:
         """Where a descent wants to look next, or the best that it has found."""
-        known = {_on_grid(each.point).tobytes(): each for each in history}
+        known = {on_grid(each.point).tobytes(): each for each in history}
         # The objectives of the initial design do not change while a descent goes on.
         usable = [each for each in history[: self.initial] if not each.failed]
         scale = 1 / max(min(abs(each.objective) for each in usable), np.finfo(float).tiny)
@@ -167,7 +160,7 @@ class GradientSearch(AbstractStrategy):
                     break
                 if not best.feasible(self.tolerance):
                     self._towards_feasible(path, best.point)
-        except _Unknown as unknown:
+        except Unknown as unknown:
             return unknown.point
         except _Stalled:
             pass
@@ -231,10 +224,10 @@ class _Path:
         return found
 
     def _at(self, point: Point) -> Evaluation:
-        within = _on_grid(point)
+        within = on_grid(point)
         found = self._known.get(within.tobytes())
         if found is None:
-            raise _Unknown(within)
+            raise Unknown(within)
         if found is not self.seen[-1]:
             self.seen.append(found)
             self._require_progress(found)
@@ -274,8 +267,3 @@ class _Path:
         if here.failed:
             return np.zeros((len(here.constraints), len(point)))
         return self._slopes(here.point)[1]
-
-
-def _on_grid(point: Point) -> Point:
-    """The nearest point of a fine grid in the box."""
-    return np.round(np.clip(point, 0.0, 1.0) / GRID) * GRID + 0.0  # no negative zero

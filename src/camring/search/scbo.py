@@ -4,15 +4,17 @@ Of the family of TuRBO (Eriksson et al. 2019) and SCBO (Eriksson and Poloczek 20
 one Gaussian process for the objective and one for each constraint, under warps that
 make them easier to learn; a brick around the best point, longer where the objective
 changes slowly, that grows with success and shrinks with failure; Thompson sampling
-in it. Two things are added. One point of each batch is not drawn but descended to
-by the slopes of the processes, which is what makes the last digits cheap; and a
-known approximation of the objective may serve as its prior mean.
+in it. Three things are added. One point of each batch is not drawn but descended to
+by the slopes of the processes, which is what makes the last digits cheap; where points
+are chosen one by one most of them are, and now and then one is where the whole box
+promises most, whatever the brick. A known approximation of the objective may serve as
+its prior mean.
 
 When the brick has become too small to matter, the search begins again elsewhere.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -34,9 +36,13 @@ FEWEST_TO_LEARN_FROM = 3
 MOST_STRETCHED = 4.0  # longest over mean edge of the brick, and mean over shortest
 SURPRISING = 0.5  # deviations taken off the objective's mean by every other descent
 WORTHWHILE = 1e-4  # gain of the objective, or of the violation, relative
-SMALLEST = 0.02  # mean edge of the brick, in box widths; a smaller one begins anew elsewhere
+SMALLEST = 0.005  # mean edge of the brick, in box widths; a smaller one begins anew elsewhere
 FEW_DIMENSIONS, EVERY_FEW, EVERY_MANY = 6, 2, 4  # one draw in so many looks at the whole box
+FIRST_OF_MANY = 0.4  # edge at first, above few dimensions: a corner of a large box is far away
+MOST_DESCENTS = 3  # between two points that are none, where points are chosen one by one
+HOPEFUL, LENIENT = 2.0, -1.0  # deviations off objective and limits for a look at the whole box
 INITIAL, SEARCHING = "initial", "scbo"
+BATCH, DESCENT, DRAW, LOOK = "batch", "descent", "draw", "look"
 
 
 @dataclass(frozen=True)
@@ -54,8 +60,9 @@ class Scbo(AbstractStrategy):
         Points of the initial design, the given ones included, and of each restart's;
         None is dimension + 2, or one batch if that is more.
     batch
-        Points proposed at once, none of which knows the others' results. With 1,
-        descents and draws take turns.
+        Points proposed at once, none of which knows the others' results. With 1, up
+        to three descents, the more the more dimensions, are followed by a look at the
+        whole box, or, above six dimensions, in turn by one and by a draw.
     model_size
         At most so many evaluations, mostly the nearest, enter the processes: a proposal
         after 1000 evaluations takes no longer than one after 200.
@@ -85,6 +92,14 @@ class Scbo(AbstractStrategy):
         with one_linear_algebra_thread():
             return self._batch(history, memory, seed)
 
+    @property
+    def _few(self) -> bool:
+        return self.dimension <= FEW_DIMENSIONS
+
+    @property
+    def _descents(self) -> int:
+        return min(max(self.dimension // 2, 1), MOST_DESCENTS)
+
     def _batch(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal:
         trial = len(history)
         since, region = memory.get("since", 0), self._region(history, memory)
@@ -106,7 +121,8 @@ class Scbo(AbstractStrategy):
         best = min(history[since:], key=lambda one: one.rank(self.tolerance))
         surrogate = self._surrogate(history, best, memory)
         kept["learned"] = surrogate.learned.to_memory()
-        points = self._points(history, surrogate, region, best.point, seed)
+        kept["kind"] = kind = self._kind(trial - since)
+        points = self._points(history, surrogate, region, best.point, seed, kind)
         return Proposal.of_batch(points, SEARCHING, kept)
 
     def _initial(self, trial: int) -> int:
@@ -126,17 +142,34 @@ class Scbo(AbstractStrategy):
         """The brick after what the last batch brought."""
         if memory.get("phase") != SEARCHING:
             kept = memory.get("region")
-            return TrustRegion(**kept) if kept else TrustRegion()
+            return TrustRegion(**kept) if kept else self._first()
         since, begun = memory["since"], memory["begun"]
         infeasible, value = min(one.rank(self.tolerance) for one in history[since:begun])
         batch = history[begun:]
         # A gain that is none to speak of does not keep a brick from collapsing.
         worth = (infeasible, value - WORTHWHILE * abs(value))
         improved = min(one.rank(self.tolerance) for one in batch) < worth
+        if memory.get("kind") == LOOK:
+            region = TrustRegion(**memory["region"])
+            return region.after_discovery() if improved else region
         patience = self.patience or max(3, -(-self.dimension // (2 * self.batch)))
-        return TrustRegion(**memory["region"]).after_step(
-            improved, batch[0].feasible(self.tolerance), patience, SMALLEST
-        )
+        before = TrustRegion(**memory["region"])
+        after = before.after_step(improved, batch[0].feasible(self.tolerance), patience, SMALLEST)
+        if after.collapses > before.collapses:
+            return replace(after, length=self._first().length)
+        return after
+
+    def _first(self) -> TrustRegion:
+        return TrustRegion() if self._few else TrustRegion(FIRST_OF_MANY)
+
+    def _kind(self, place: int) -> str:
+        """Of the next point, if points are chosen one by one."""
+        if self.batch > 1:
+            return BATCH
+        turn, rest = divmod(place, self._descents + 1)
+        if rest < self._descents:
+            return DESCENT
+        return LOOK if self._few or turn % 2 else DRAW
 
     def _surrogate(
         self, history: Sequence[Evaluation], best: Evaluation, memory: Memory
@@ -157,19 +190,25 @@ class Scbo(AbstractStrategy):
         trusted: TrustRegion,
         centre: Point,
         seed: int,
+        kind: str,
     ) -> list[Point]:
         trial = len(history)
         region = trusted.around(centre, self._shape(surrogate.learned))
-        turn, drawn_only = divmod(trial, 2) if self.batch == 1 else (trial // self.batch, 0)
+        turn = trial // self.batch
+        criterion, starts = Criterion(SURPRISING * (turn % 2), trusted.caution), 1
+        if kind == LOOK:
+            region = Region.everything(self.dimension)
+            turn = trial // (self._descents + 1)
+            criterion, starts = Criterion(HOPEFUL * (1 + turn % 2), LENIENT), 2
         found: list[Point] = []
-        if not drawn_only:
-            criterion = Criterion(SURPRISING * (turn % 2), trusted.caution)
+        if kind != DRAW:
             suggestions = suggest(
-                surrogate, region, criterion, centre, generator(seed, trial), starts=1
+                surrogate, region, criterion, centre, generator(seed, trial), starts
             )
             found.append(self._apart([each.point for each in suggestions], history, found, seed))
         if len(found) < self.batch:
-            found += self._drawn(history, surrogate, region, centre, found, turn, seed)
+            only_here = kind == DRAW
+            found += self._drawn(history, surrogate, region, centre, found, turn, seed, only_here)
         return found
 
     def _drawn(
@@ -181,12 +220,14 @@ class Scbo(AbstractStrategy):
         before: Sequence[Point],
         turn: int,
         seed: int,
+        only_here: bool,
     ) -> list[Point]:
-        """The best points of draws: most in the brick, every so many in the whole box."""
+        """The best points of draws: in the brick, and if wanted every so many in the whole box."""
         random = generator(seed, len(history), 2)
         count = self.batch - len(before)
-        period = EVERY_FEW if self.dimension <= FEW_DIMENSIONS else EVERY_MANY
+        period = EVERY_FEW if self._few else EVERY_MANY
         anywhere = (turn * count + np.arange(count)) % period == period - 1
+        anywhere &= not only_here
         found: list[Point] = []
         for place in (Region.everything(self.dimension), region):
             wanted = int(np.sum(anywhere if place is not region else ~anywhere))

@@ -9,13 +9,16 @@ from jaxtyping import Float
 
 from camring.search.bayesian import Bayesian
 from camring.search.cma_es import CmaEs
+from camring.search.cobyqa import Cobyqa
 from camring.search.gradient import GradientSearch, Slopes
 from camring.search.hybrid import Hybrid, Stage
 from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy, Points
 from camring.search.scbo import Scbo
 
-SHARE_OF_REFINEMENT = 0.2  # of a Bayesian search's budget, for the simplex at its end
+SHARE_OF_REFINEMENT = 0.2  # of a Bayesian search's budget, for the descent at its end
+FIRST_STEP = 0.25  # box widths, of a descent that begins where nothing is known
+REFINING_STEP = 0.05  # box widths: a first step of that descent
 
 
 @dataclass(frozen=True)
@@ -42,24 +45,29 @@ class Task:
     batch: int = 1
 
 
-def then_simplex(learning: Bayesian, budget: int, share: float = SHARE_OF_REFINEMENT) -> Hybrid:
-    """A Bayesian search whose last share of the budget refines its best point by a simplex.
+def then_descent(learning: Bayesian, budget: int, share: float = SHARE_OF_REFINEMENT) -> Hybrid:
+    """A Bayesian search whose last share of the budget refines its best point by COBYQA.
 
-    With batches it is a share of the time: a simplex has use for one worker only.
+    With batches it is a share of the time: that descent has use for one worker only.
     """
     first = max(budget - int(share * budget / learning.batch), len(learning.given))
-    return Hybrid((Stage(learning, first), Stage(NelderMead(learning.dimension), None)))
+    descent = Cobyqa(learning.dimension, step=REFINING_STEP, tolerance=learning.tolerance)
+    return Hybrid((Stage(learning, first), Stage(descent, None)))
 
 
 def _bayesian(task: Task) -> AbstractStrategy:
     learning = Bayesian(
         task.dimension, approximate=task.approximate, given=task.given, batch=task.batch
     )
-    return then_simplex(learning, task.budget)
+    return then_descent(learning, task.budget)
 
 
 def _nelder_mead(task: Task) -> AbstractStrategy:
     return NelderMead(task.dimension, start=task.given[0] if task.given else None)
+
+
+def _cobyqa(task: Task) -> AbstractStrategy:
+    return Cobyqa(task.dimension, start=task.given[0] if task.given else None, step=FIRST_STEP)
 
 
 def _scbo(task: Task) -> AbstractStrategy:
@@ -79,6 +87,7 @@ def _gradient(task: Task) -> AbstractStrategy:
 STRATEGIES: dict[str, Callable[[Task], AbstractStrategy]] = {
     "bayesian": _bayesian,
     "cma-es": _cma_es,
+    "cobyqa": _cobyqa,
     "gradient": _gradient,
     "nelder-mead": _nelder_mead,
     "scbo": _scbo,

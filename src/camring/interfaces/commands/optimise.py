@@ -11,6 +11,7 @@ class Method(StrEnum):
     """How designs are sought; the words of [search] method, without importing pydantic."""
 
     GRADIENT = "gradient"
+    SCBO = "scbo"
     BAYESIAN = "bayesian"
 
 
@@ -28,8 +29,8 @@ def optimise(
     method: Annotated[
         Method | None,
         typer.Option(
-            help="Down exact slopes, or by a model learned from evaluations alone; "
-            "else that of the file, or gradient."
+            help="Down exact slopes, or by a model learned from evaluations alone, in a trust "
+            "region or in the whole box; else that of the file, or gradient."
         ),
     ] = None,
     theory: Annotated[

@@ -74,7 +74,7 @@ class ConstraintsTable(Table):
     ] = None
 
 
-GRADIENT, BAYESIAN = METHODS = ("gradient", "bayesian")
+GRADIENT, SCBO, BAYESIAN = METHODS = ("gradient", "scbo", "bayesian")
 
 
 class SearchTable(Table):
@@ -86,7 +86,7 @@ class SearchTable(Table):
         str,
         Word(
             "how designs are sought: down exact slopes from several starts, or by a model "
-            "learned from the evaluations alone",
+            "learned from the evaluations alone, in a trust region or in the whole box",
             '"gradient"',
             words=METHODS,
         ),
@@ -105,6 +105,6 @@ class SearchTable(Table):
     refinement: Key[
         float,
         Number(
-            "the share of the bayesian search's budget for the simplex at its end", "0.2", high=1.0
+            "the share of the bayesian search's budget for the descent at its end", "0.2", high=1.0
         ),
     ] = 0.2

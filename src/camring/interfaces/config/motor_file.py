@@ -128,7 +128,7 @@ def parse_motor_file(text: str, path: Path = Path("motor.toml")) -> MotorFile:
         raise InputError(
             "search.method",
             'is "gradient", which needs slopes that [evaluator] does not give',
-            'leave it out, or write method = "bayesian"',
+            'leave it out, or write method = "scbo"',
         )
     return MotorFile(
         text=text,

@@ -151,7 +151,7 @@ mirror = true                                 # stays symmetric about its dead c
 
 [search]
 budget = 300                                  # model evaluations, at most
-# method = "bayesian"                         # learns from evaluations alone; no slopes
+# method = "scbo"                             # learns from evaluations alone; no slopes
 seed = 0
 """
 

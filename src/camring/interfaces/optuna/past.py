@@ -18,7 +18,7 @@ from camring.search.problem import Evaluation, Memory
 
 ASKED = "camring:asked"
 # These read their memory beside the evaluations that they asked for, and no others.
-DEAF = ("nelder-mead", "cma-es")
+DEAF = ("nelder-mead", "cma-es", "cobyqa")
 
 
 @dataclass(frozen=True, eq=False)

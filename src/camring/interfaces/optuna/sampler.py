@@ -22,7 +22,7 @@ from camring.search.sampling import generator, initial_point
 from camring.search.strategies import STRATEGIES, Task, strategy_named
 
 WITHOUT_SLOPES = tuple(name for name in STRATEGIES if name != "gradient")
-ENDLESS = 10**9  # evaluations: no simplex at the end
+ENDLESS = 10**9  # evaluations: no descent at the end
 CONSTRAINTS = "constraints"
 TRIES = 64
 _logger = optuna.logging.get_logger(__name__)
@@ -37,15 +37,15 @@ class CamringSampler(BaseSampler):
     Parameters
     ----------
     strategy
-        "bayesian", "cma-es", "nelder-mead" or "scbo".
+        "bayesian", "cma-es", "cobyqa", "nelder-mead" or "scbo".
     seed
         Where all chance comes from: the same seed, the same trials, bit for bit.
     space
         Distributions of the parameters, where they are known beforehand. Otherwise the
         first trial is the middle of every range, and the search begins with the second.
     budget
-        Trials after which nothing more will come: a Bayesian search refines the best
-        design by a simplex with the last fifth of them. None: it never does.
+        Trials after which nothing more will come: "bayesian" refines the best design by
+        quadratic models with the last fifth of them. None: it never does.
     constraints_func
         Takes a finished trial and returns what must be at most 0, as Optuna's own
         samplers do; `trial.set_constraint` inside the objective does the same.
@@ -61,7 +61,7 @@ class CamringSampler(BaseSampler):
 
     def __init__(
         self,
-        strategy: str = "bayesian",
+        strategy: str = "scbo",
         *,
         seed: int = 0,
         space: Mapping[str, BaseDistribution] | None = None,

@@ -19,11 +19,13 @@ _PHASES = {
     "global": "Bayesian search",
     "local": "Bayesian search",
     "bayesian": "Bayesian search",
+    "scbo": "Bayesian search",
     "descent": "descent",
     "refine": "refinement",
     "refinement": "refinement",
     "nelder": "refinement",
     "simplex": "refinement",
+    "cobyqa": "refinement",
 }
 
 
