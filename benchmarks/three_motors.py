@@ -1,7 +1,7 @@
 """What `camring optimise` makes of the three example motors, from several seeds.
 
     python benchmarks/three_motors.py [--seeds 3] [--seeds-without-theory 2] [--motors mill]
-        [--seeds-of-bayesian 1]
+        [--seeds-of-scbo 1]
 
 Every study is the command itself in a process of its own, as a user runs it, with
 the example's budget of 300 evaluations. It prints the tables of the README: what was
@@ -144,17 +144,17 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--seeds-without-theory", type=int, default=2)
     parser.add_argument("--motors", nargs="+", default=["wheel", "winch", "mill"])
-    parser.add_argument("--seeds-of-bayesian", type=int, default=1)
+    parser.add_argument("--seeds-of-scbo", type=int, default=1)
     asked = parser.parse_args()
 
     rows = []
     for motor in asked.motors:
-        few = asked.seeds_of_bayesian
+        few = asked.seeds_of_scbo
         for method, theory, seeds in (
             ("gradient", True, asked.seeds),
             ("gradient", False, asked.seeds_without_theory),
-            ("bayesian", True, few),
-            ("bayesian", False, few),
+            ("scbo", True, few),
+            ("scbo", False, few),
         ):
             for seed in range(seeds):
                 rows.append(study(motor, seed, theory, method))
