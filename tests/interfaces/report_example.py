@@ -183,7 +183,9 @@ def make_result(controls, duty, width, shift, count=721) -> tuple[data.Profile, 
         return_,
     )
     profile = data.Profile(angle, r, r1, curvature, phi, undercut)
-    result = data.Result(duty, metrics, waves, orders, 2 * spectrum[:601], 3e-9, 4e-6)
+    flow = sum(np.roll(np.tile(qs[:-1], LOBES), -int(k)) for k in places)
+    flows = 2 * np.abs(np.fft.rfft(flow))[:601] / len(flow)
+    result = data.Result(duty, metrics, waves, orders, 2 * spectrum[:601], flows, 3e-9, 4e-6)
     return profile, result
 
 

@@ -153,6 +153,7 @@ def test_everything_a_reviewer_asks_for_is_there(page):
         "Inner dead centre, magnified",
         "Which orders survive",
         "orders 24, 48, 72",
+        "% of mean supply flow",
         "Power balance",
         "Leave-one-out",
         "Convergence of the search",
@@ -334,6 +335,7 @@ def test_a_simulation_that_failed_is_still_drawn(study):
                     waves=replace(result.waves, **nothing),
                     metrics=dict.fromkeys(result.metrics, float("nan")),
                     torque_amplitudes=np.full_like(result.torque_amplitudes, np.nan),
+                    flow_amplitudes=np.full_like(result.flow_amplitudes, np.nan),
                 )
             )
         designs.append(replace(design, results=tuple(results)))

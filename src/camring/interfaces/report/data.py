@@ -108,6 +108,7 @@ class Result:
     waves: Waves
     orders: np.ndarray  # shaft orders, ascending
     torque_amplitudes: np.ndarray  # N m, peak value of each order
+    flow_amplitudes: np.ndarray  # m3/s, of the supply flow of all pistons
     periodicity_residual: float = float("nan")
     numerical_error: float = float("nan")
 

@@ -74,8 +74,9 @@ def _profile(motor: Motor, angle: np.ndarray) -> Profile:
 
 
 @motor_program
-def _torque_by_order(cycle: Cycle, highest_order: int) -> Array:
-    return order_spectrum(cycle, highest_order).torque
+def _by_order(cycle: Cycle, highest_order: int) -> tuple[Array, Array]:
+    found = order_spectrum(cycle, highest_order)
+    return found.torque, found.supply_flow
 
 
 def results_of(system: System, harmonics: int = HARMONICS) -> list[dict[str, float]]:
@@ -91,7 +92,7 @@ def _numbers(cycle: Cycle, harmonics: int) -> dict[str, float]:
 def _result(cycle: Cycle, angle: np.ndarray, harmonics: int, error: float) -> Result:
     plate, inside = cycle.motor.valve_plate, _inside(angle)
     waves = waveforms(cycle, inside)
-    torque = np.asarray(_torque_by_order(cycle, harmonics))
+    torque, flow = map(np.asarray, _by_order(cycle, harmonics))
     return Result(
         duty=_duty(cycle.point),
         metrics=_numbers(cycle, harmonics),
@@ -103,6 +104,7 @@ def _result(cycle: Cycle, angle: np.ndarray, harmonics: int, error: float) -> Re
         ),
         orders=cycle.motor.cam.repeats * np.arange(1, len(torque) + 1),
         torque_amplitudes=torque,
+        flow_amplitudes=flow,
         periodicity_residual=float(cycle.periodicity_residual),
         numerical_error=error,
     )

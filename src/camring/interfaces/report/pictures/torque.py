@@ -1,7 +1,7 @@
-"""Shaft torque over a revolution, and the orders it is made of."""
+"""Shaft torque over a revolution, and the orders that it and the supply flow are made of."""
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -58,21 +58,50 @@ def _over_revolution(designs: Sequence[Design], duty: int) -> Figure:
     return Figure(name, "Shaft torque over a revolution", svg, sentence, wide=True)
 
 
-def surviving(result: Result, order: int, limit: int = 12) -> tuple[np.ndarray, np.ndarray]:
-    """The multiples of the surviving order and their amplitudes in per cent of mean torque."""
+@dataclass(frozen=True)
+class _Wave:
+    """What is taken apart into orders."""
+
+    name: str
+    words: str
+    title: str
+    mean: str  # metric that the amplitudes are shares of
+    amplitudes: Callable[[Result], np.ndarray]
+
+
+_TORQUE = _Wave(
+    "orders",
+    "torque",
+    "Which orders survive",
+    "mean_torque",
+    lambda result: result.torque_amplitudes,
+)
+_FLOW = _Wave(
+    "flow-orders",
+    "supply flow",
+    "The same orders of the supply flow",
+    "supply_flow",
+    lambda result: result.flow_amplitudes,
+)
+
+
+def surviving(
+    result: Result, order: int, limit: int = 12, wave: _Wave = _TORQUE
+) -> tuple[np.ndarray, np.ndarray]:
+    """The multiples of the surviving order and their amplitudes in per cent of the wave's mean."""
     chosen = (result.orders > 0) & (result.orders % order == 0)
     orders = result.orders[chosen][:limit]
-    amplitudes = result.torque_amplitudes[chosen][:limit]
-    return orders, 100 * amplitudes / abs(result.metrics["mean_torque"])
+    amplitudes = wave.amplitudes(result)[chosen][:limit]
+    return orders, 100 * amplitudes / abs(result.metrics[wave.mean])
 
 
-def _spectrum(designs: Sequence[Design], duty: int) -> Figure:
-    name = f"orders-{duty}"
+def _spectrum(designs: Sequence[Design], duty: int, wave: _Wave) -> Figure:
+    name = f"{wave.name}-{duty}"
     count = len(designs)
     layers: list = []
     tops, reach = [], 0.0
     for k, (design, look) in enumerate(zip(designs, looks(designs), strict=True)):
-        orders, percent = surviving(design.results[duty], design.facts.surviving_order)
+        orders, percent = surviving(design.results[duty], design.facts.surviving_order, wave=wave)
         shown = np.where(percent > FLOOR, percent, np.nan)
         tops.append(shown)
         reach = max(reach, float(orders[-1]) if orders.size else 1.0)
@@ -82,13 +111,13 @@ def _spectrum(designs: Sequence[Design], duty: int) -> Figure:
     svg = draw(
         Chart(
             name,
-            "Torque by shaft order",
-            "Peak amplitude of each surviving order of shaft torque, in per cent of mean torque, "
+            f"{wave.words.capitalize()} by shaft order",
+            f"Peak amplitude of each surviving order of {wave.words}, in per cent of its mean, "
             "on a logarithmic scale.",
             Axis(
                 "Shaft order", "per revolution", 0.0, reach + base / 2, marked=_marks(base, reach)
             ),
-            Axis("Amplitude (peak)", "% of mean torque", FLOOR, max(high, 1.0), "log"),
+            Axis("Amplitude (peak)", f"% of mean {wave.words}", FLOOR, max(high, 1.0), "log"),
             layers,
             [(label, replace(look, key="mark")) for label, look in legend(designs)],
             width=1064.0,
@@ -96,31 +125,34 @@ def _spectrum(designs: Sequence[Design], duty: int) -> Figure:
             readable=False,
         )
     )
-    return Figure(name, "Which orders survive", svg, _order_sentence(designs, duty), wide=True)
+    return Figure(name, wave.title, svg, _order_sentence(designs, duty, wave), wide=True)
 
 
 def _marks(base: int, reach: float) -> tuple[float, ...]:
     return tuple(float(n) for n in range(base, int(reach) + 1, base))
 
 
-def _order_sentence(designs: Sequence[Design], duty: int) -> str:
+def _order_sentence(designs: Sequence[Design], duty: int, wave: _Wave) -> str:
     facts = designs[-1].facts
     base = facts.surviving_order
-    orders, percent = surviving(designs[-1].results[duty], base)
+    orders, percent = surviving(designs[-1].results[duty], base, wave=wave)
     why = (
         f"{facts.pistons} pistons on {facts.lobes} lobes cancel every order that is not a multiple "
-        f"of {base}, so torque holds orders {base}, {2 * base}, {3 * base} and so on only."
+        f"of {base}, so {wave.words} holds orders {base}, {2 * base}, {3 * base} and so on only."
     )
+    if wave is _FLOW:
+        why = "What the supply line hears: it makes pressure ripple in the pipes."
     if not orders.size or not np.isfinite(percent).any():
         return why
     strongest = int(np.argmax(percent))
     whose = "" if len(designs) == 1 else f" of the {designs[-1].label} design"
     return (
         f"{why} The strongest{whose} is order {int(orders[strongest])} with "
-        f"{significant(float(percent[strongest]), 2)} % of mean torque (peak)."
+        f"{significant(float(percent[strongest]), 2)} % of mean {wave.words} (peak)."
     )
 
 
 def torque_figures(designs: Sequence[Design], duty: int) -> list[Figure]:
-    """Torque in angle and in orders at one operating point."""
-    return [_over_revolution(designs, duty), _spectrum(designs, duty)]
+    """Torque in angle, torque and supply flow in orders, at one operating point."""
+    spectra = [_spectrum(designs, duty, wave) for wave in (_TORQUE, _FLOW)]
+    return [_over_revolution(designs, duty), *spectra]
