@@ -260,8 +260,7 @@ def widest_gap(losses: list[list[float]]) -> float:
 
 
 def draw(fronts: list[Found], names, path: Path) -> None:
-    """Writes the picture of two results as SVG and PNG: same processor time, first seed."""
-    import matplotlib
+    """Writes the picture of two results as PNG: same processor time, first seed."""
     import numpy as np
     from matplotlib.figure import Figure
 
@@ -290,8 +289,6 @@ def draw(fronts: list[Found], names, path: Path) -> None:
     )
     axes.legend(fontsize=7, frameon=False)
     figure.tight_layout()
-    with matplotlib.rc_context({"svg.hashsalt": "camring"}):
-        figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
     figure.savefig(path.with_suffix(".png"), dpi=90)
 
 
