@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from contextlib import suppress
 
 import numpy as np
 
@@ -52,6 +53,7 @@ def botorch_scbo(oracle: Oracle, batch: int = 4) -> str:
     sampling over perturbed Sobol candidates.
     """
     import torch
+    from botorch.exceptions.errors import ModelFittingError
     from botorch.fit import fit_gpytorch_mll
     from botorch.generation.sampling import (
         ConstrainedMaxPosteriorSampling,
@@ -83,7 +85,8 @@ def botorch_scbo(oracle: Oracle, batch: int = 4) -> str:
             likelihood=GaussianLikelihood(noise_constraint=Interval(1e-8, 1e-3)),
             outcome_transform=Standardize(m=1),
         )
-        fit_gpytorch_mll(ExactMarginalLogLikelihood(model.likelihood, model))
+        with suppress(ModelFittingError):  # then with the hyper-parameters that it starts from
+            fit_gpytorch_mll(ExactMarginalLogLikelihood(model.likelihood, model))
         return model
 
     def judged(points: np.ndarray) -> list[tuple[float, np.ndarray]]:

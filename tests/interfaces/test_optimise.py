@@ -211,6 +211,15 @@ def test_a_search_that_learns_tells_of_its_surrogates_and_stays_what_it_is(tmp_p
     assert "descent" not in camring.open_study(folder).records[-1].phase
 
 
+def test_a_search_in_a_trust_region_goes_on_after_an_end(tmp_path):
+    folder = tmp_path / "study"
+    camring.optimise(EXAMPLE, folder, budget=16, method="scbo", theory=False)
+    camring.resume(folder, budget=18)
+    study = camring.open_study(folder)
+    assert [record.phase for record in study.records][-4:] == ["scbo"] * 4
+    assert set(study.leave_one_out["errors"]) == {"plain", "rho = 1", "fitted rho"}
+
+
 def test_an_unknown_method_is_refused(tmp_path):
     with pytest.raises(camring.InputError, match=r"'slope'.*gradient, scbo, bayesian"):
         camring.optimise(EXAMPLE, tmp_path / "study", method="slope")
