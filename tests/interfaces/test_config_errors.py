@@ -26,6 +26,11 @@ FAULTS = {
     "unknown unit": (with_line('bore = "30 mmm"'), ['motor.bore is "30 mmm"', "mmm", "mm"]),
     "wrong dimension": (with_line('bore = "30 s"'), ["motor.bore", "a time, not a length"]),
     "no dimension": (with_line('bore = "30 %"'), ["motor.bore", "not a length"]),
+    "gauge pressure": (with_line('supply_pressure = "250 barg"'), ["absolute", "1.01325 bar"]),
+    "operating points in single brackets": (
+        SOUND.replace("[[operating_points]]", "[operating_points]"),
+        ["write [[operating_points]]"],
+    ),
     "frequency for a speed": (with_line('speed = "2 Hz"'), ["[0].speed", "turning speed"]),
     "decimal comma": (with_line('bore = "30,5 mm"'), ["motor.bore", "decimal point"]),
     "words": (with_line('bore = "thirty"'), ["motor.bore", "number", '"30 mm"']),
@@ -224,7 +229,7 @@ SPACE_FAULTS = {
     ),
     "given motor outside": (
         '"motor.bore" = ["31 mm", "32 mm"]',
-        ["motor.bore", "leave out the given value 0.03 m", "widen"],
+        ["motor.bore", "leave out the given value 30 mm", "widen"],
     ),
     "given motor outside a share": (
         '"motor.bore" = { relative = ["1 %", "2 %"] }',

@@ -200,6 +200,7 @@ REFUSED = [
     (["motor.bore=30 mm..30 mm"], "has the empty range"),
     (["motor.bore=30 mm, 32 mm, 31 mm"], "neither rises nor falls"),
     (["motor.bore"], "is no KEY=RANGE"),
+    (["motor.bore=0.03..0.04"], "without a unit; write one behind it: 30 mm"),
     (["motor.bore=29..30 mm", "motor.bore=29..30 mm"], "appears twice"),
     (["motor.bore=1..2", "motor.dead_volume=1..2", f"{SHIFT}=0..1"], "give one or two"),
     (["motor.pistons=5..9"], "is a count"),
@@ -229,6 +230,7 @@ def test_a_sweep_that_cannot_be_is_refused_in_a_sentence(motor, arguments, words
     [
         (["--pressure", "5 bar..100 bar"], "not above the return pressure of 10 bar"),
         (["--speed", "10..20 bar"], "which measures a pressure"),
+        (["--speed", "10..300"], "without a unit"),
         (["--speed", "-5 rpm..20 rpm"], "operating_points.speed"),
         (["--points", "400x400"], "asks for 160,000 simulations"),
     ],

@@ -167,6 +167,7 @@ class TestCatalogue:
             ("--envelope", "150 mm", r"give at least (\d+ mm)"),
             ("--pressure", "900 bar", r"give at most (\d+ bar)"),
             ("--speed", "3000 rpm", r"give at most (\d+ rpm)"),
+            ("--speed", "5000 rpm", r"give at most (\d+ rpm)"),
         ],
     )
     def test_the_way_out_of_the_impossible_is_one(self, option, value, way_out):

@@ -19,7 +19,7 @@ def crowded(motor: Motor, inner: float) -> list[str]:
     """
     pistons, bore = motor.pistons, float(motor.piston.bore)
     wanted = bore if motor.gap is None else float(motor.gap.length)
-    whose = "as long as its bore, so that it does not tilt" if motor.gap is None else "of that gap"
+    whose = "as long as its bore, so that it does not tilt," if motor.gap is None else "of that gap"
     said = []
     room = float(guided_length(pistons, bore, inner))
     if room < wanted:

@@ -20,6 +20,7 @@ from camring.interfaces.simulation_output import (
     versions,
     written,
 )
+from camring.interfaces.units import from_si
 from camring.numerics.quantity import ArrayLike
 
 
@@ -27,7 +28,7 @@ def print_facts(found: Simulated) -> None:
     """Facts, port timing, limits with margins, warnings."""
     out = console()
     facts = Table(title=title(found), title_justify="left", box=None, show_header=False)
-    for name, value in {**_hardware(found), **_timing(found)}.items():
+    for name, value in {**_hardware(found), **_duties(found), **_timing(found)}.items():
         facts.add_row(name, value)
     out.print(facts)
     out.print()
@@ -52,6 +53,21 @@ def _hardware(found: Simulated) -> dict[str, str]:
         "Smallest chamber": written("min_volume", results["min_volume"]),
         "Cam": _cam(found),
         "Design space": "none" if space is None else f"{space.dimension} coordinates",
+    }
+
+
+def _duties(found: Simulated) -> dict[str, str]:
+    """What the motor is asked for, in the units in which a wrong one shows."""
+    points = found.file.system.operating_points
+    several = len(points) > 1
+    return {
+        f"Operating point{f' {place}' if several else ''}": (
+            f"{from_si(float(point.shaft_speed), 'rpm'):.5g} rpm, "
+            f"{float(point.supply_pressure) / 1e5:.5g} to {float(point.return_pressure) / 1e5:.5g} "
+            f"bar, case {float(point.case_pressure) / 1e5:.5g} bar"
+            + (", in reverse" if point.reverse else "")
+        )
+        for place, point in enumerate(points, start=1)
     }
 
 

@@ -1,6 +1,6 @@
 """Results over one or two numbers of the motor file: what a map and a sweep come to."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, get_args, get_type_hints
 
@@ -139,6 +139,10 @@ def quantity(name: str) -> Quantity:
     known = QUANTITIES.get(name)
     if known is not None:
         return known
+    plain = QUANTITIES.get(name.removesuffix("_true_rms"))
+    if plain is not None:
+        label = f"{plain.label.removesuffix(', one-sided')}, true rms"
+        return replace(plain, name=name, label=label)
     words = name.replace("_", " ")
     unit = si_units()[name]
     if unit == "Pa":

@@ -93,6 +93,11 @@ def _in_one_unit(key: str, texts: list[str], entry: Number) -> tuple[str, list[f
         shown = quote(", ".join(texts))
         raise InputError(key, f"is {shown}, which {error}", entry.way_out) from None
     unit = next((unit for _, unit in reversed(parts) if unit), "")
+    if not unit and entry.unit not in ("", "1"):
+        example = _bare(entry.example)
+        raise InputError(
+            key, f"is {quote(', '.join(texts))}, without a unit", f"write one behind it: {example}"
+        )
     values = []
     for number, own in parts:
         text = f"{number!r} {own or unit}".rstrip()

@@ -91,6 +91,10 @@ SCALES: dict[str, Unit] = {
 }
 
 
+GAUGE = ("barg", "psig", "bar_g", "barü", "kpag", "mpag")
+GAUGE_WAY_OUT = "add the atmosphere's 1.01325 bar (14.696 psi)"
+
+
 def named_unit(name: str) -> Unit:
     """One unit by its name, from the table or from pint."""
     name = name.replace("μ", "µ")  # the Greek letter for the micro sign
@@ -99,6 +103,8 @@ def named_unit(name: str) -> Unit:
         return found
     if name in SCALES:
         raise UnitError(f"uses {name!r} in a product, where a temperature scale has no meaning")
+    if name.lower() in GAUGE:
+        raise UnitError(f"has the unit {name!r}, but pressures here are absolute: {GAUGE_WAY_OUT}")
     close = get_close_matches(name, EVERYDAY, n=1, cutoff=0.5)
     if not close:
         close = [known for known in EVERYDAY if known.lower() == name.lower()]

@@ -11,6 +11,7 @@ from camring.interfaces.config.keys import Choices, key_map, nearest
 from camring.interfaces.config.paths import flat_paths
 from camring.interfaces.config.tables import FileTables
 from camring.interfaces.errors import InputError, quote
+from camring.interfaces.units import from_si, split_quantity
 from camring.numerics.quantity import real
 from camring.objective.design_space import DesignSpace, Variable, leaf
 from camring.physics.system import System
@@ -168,12 +169,18 @@ def _bounds(path: str, bounds: Any, item: Number) -> tuple[float, float]:
         raise InputError(_field(path) + error.inside, error.problem, error.way_out) from None
 
 
+def _as_bounds(given: float, bounds: Any) -> str:
+    """A value as the bounds are written: in their unit, if they have one."""
+    unit = split_quantity(bounds[0])[1] if isinstance(bounds[0], str) else ""
+    return f"{from_si(given, unit):.6g} {unit}" if unit else f"{given:.6g}"
+
+
 def _require_given_inside(variable: Variable, bounds: Any, item: Number, system: System) -> None:
     unit = float(variable.locate(system))
     shown = f"[{quote(bounds[0])}, {quote(bounds[1])}]"
     if not -INSIDE <= unit <= 1 + INSIDE:
         given = 0.0 if variable.relative else float(leaf(variable.leaves[0][0])(system))
-        told = "no change" if variable.relative else f"the given value {given:.6g} {item.unit}"
+        told = "no change" if variable.relative else f"the given value {_as_bounds(given, bounds)}"
         raise InputError(
             _field(variable.name), f"has bounds {shown} that leave out {told}", "widen them"
         )

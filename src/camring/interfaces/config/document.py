@@ -13,6 +13,7 @@ from camring.interfaces.errors import InputError
 LARGEST_FILE = 200_000  # bytes; a motor with 720 control points has 40,000
 
 # A key of twenty parts, a.b.c...; time and memory of the parser grow with their square.
+_TABLE_TWICE = re.compile(r"declare \('(operating_points)',\) twice")
 _LONG_KEY = re.compile(
     r"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){20}""", re.ASCII
 )
@@ -80,10 +81,13 @@ def parse(text: str, shown: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
+        twice = _TABLE_TWICE.search(str(error))
         raise InputError(
             shown,
             f"is not valid TOML: {_lowered(str(error))}",
-            'write keys as `bore = "30 mm"` under a [table]',
+            f"write [[{twice[1]}]], in double brackets, for each of them"
+            if twice
+            else 'write keys as `bore = "30 mm"` under a [table]',
         ) from None
     except RecursionError:
         raise InputError(shown, "is nested too deeply", "write plain tables") from None

@@ -120,7 +120,9 @@ def parse_motor_file(text: str, path: Path = Path("motor.toml")) -> MotorFile:
     for name in ("search", "evaluator"):
         if space is None and name in document:
             raise InputError(
-                f"[{name}]", "has no effect without [design_space]", "add one or leave it"
+                f"[{name}]",
+                "has no effect without [design_space]",
+                f"add that, or leave [{name}] out",
             )
     if tables.evaluator is not None:
         tables.evaluator.require_one()

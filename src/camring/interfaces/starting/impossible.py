@@ -69,25 +69,28 @@ def _sentence(rule: str, found: Sketches, place: int, demand: Demand) -> InputEr
             "sketch",
             f"give at most {floor(kept / 1e5)} bar" + _or_room(demand),
         )
-    if rule == "ports":
+    limit = rules.PORT_DROP_LIMIT * (demand.pressure - float(one.return_pressure[0]))
+    if rule == "ports" and limit > 0:  # else rollers would ask for more return than supply
         drop = float(one.port_drop[0])
-        limit = rules.PORT_DROP_LIMIT * (demand.pressure - float(one.return_pressure[0]))
         return InputError(
             "--speed",
             f"is {demand.shaft_speed * 30 / pi:.4g} rpm, at which the ports of {who} would "
             f"throttle {drop / 1e5:.3g} bar away, above {limit / 1e5:.3g} bar",
             f"give at most {_down(demand.shaft_speed * 30 / pi * (limit / drop) ** 0.5)} rpm",
         )
-    if rule == "contact":
+    if rule in ("contact", "ports"):
         back, most = float(one.return_pressure[0]), rules.RETURN_PRESSURES[1]
         room = most - rules.RETURN_SPARE - rules.CASE_PRESSURE
         asked = back - rules.RETURN_SPARE - rules.CASE_PRESSURE
+        # At that return pressure the ports have their say as well.
+        left = rules.PORT_DROP_LIMIT * (demand.pressure - most) / float(one.port_drop[0])
+        slower = min(room / asked, left) ** 0.5
         return InputError(
             "--speed",
             f"is {demand.shaft_speed * 30 / pi:.4g} rpm, at which the rollers of {who} would "
             f"leave the ring without {back / 1e5:.0f} bar of return pressure, above "
             f"{most / 1e5:.0f} bar",
-            f"give at most {_down(demand.shaft_speed * 30 / pi * (room / asked) ** 0.5)} rpm",
+            f"give at most {_down(demand.shaft_speed * 30 / pi * slower)} rpm",
         )
     if rule == "pressure_angle":
         return InputError(
@@ -113,4 +116,4 @@ def _or_room(demand: Demand) -> str:
 def _down(value: float) -> str:
     """Two digits, rounded down, so that the way out is one."""
     scale = 10.0 ** (floor(np.log10(value)) - 1)
-    return f"{floor(value / scale) * scale:.3g}"
+    return f"{floor(value / scale) * scale:.6g}"
