@@ -36,8 +36,11 @@ class ReliefNotch(eqx.Module):
     def edges(
         self, window: AbstractWindow, width: Q[Float[Array, ""], "rad"]
     ) -> Q[Float[Array, " edge"], "rad"]:
-        """The window's edges, the notch's tip, where both together are full, and the centre."""
+        """The window's edges, the notch's tip, where both together are full, and the centre.
+
+        In no order: in lanes, a sort along the last axis would mix motors.
+        """
         tip = -width / 2 - self.angle
         full = window.opens_to(1 - self.area, width)
         own = jnp.stack([tip, full, jnp.zeros_like(tip)])
-        return jnp.sort(jnp.concatenate([window.edges(width), own]))
+        return jnp.concatenate([window.edges(width), own])

@@ -59,7 +59,7 @@ class ValvePlate(eqx.Module):
         return self.notch.opening(self.window, distance, port.width)
 
     def _edges(self, port: Port) -> Q[Float[Array, " edge"], "rad"]:
-        """Distances from a port's centre where its opening is not smooth, ascending."""
+        """Distances from a port's centre where its opening is not smooth."""
         if self.notch is None:
             return self.window.edges(port.width)
         return self.notch.edges(self.window, port.width)
