@@ -10,6 +10,7 @@ from motors import STRUCTURES, awkward_case, sound_case, stacked
 
 from camring.geometry.cam import RadialCam
 from camring.geometry.lane_cam import radius_around, radius_at, round_the_cam
+from camring.interfaces.lane_program import LaneProgram
 from camring.metrics.lane_summary import summarise_lanes
 from camring.numerics.lanes import ascending_rows, interpolate, locate
 from camring.physics.lane_cycle import LanesLook, neighbour_lanes, simulate_lanes
@@ -18,8 +19,8 @@ LANES = 8
 LOOSE = {"flow_ripple": 3e-3, "torque_ripple_peak_to_peak": 3e-4}
 """Sampled at fixed places, so that a spike between two of them is seen late."""
 
-_simulate = eqx.filter_jit(simulate_lanes)
-_summarise = eqx.filter_jit(summarise_lanes)
+_simulate = LaneProgram(simulate_lanes)
+_summarise = LaneProgram(summarise_lanes)
 
 
 def in_lanes(cases):
@@ -155,3 +156,14 @@ def test_rows_are_found_and_sorted_lane_by_lane():
     ordered, carried = ascending_rows(jnp.asarray(shuffled), jnp.asarray(2 * shuffled))
     np.testing.assert_array_equal(ordered, np.sort(shuffled, axis=0))
     np.testing.assert_array_equal(carried, 2 * ordered)
+
+
+@pytest.mark.parametrize("look", [LanesLook.search(), LanesLook()])
+def test_windows_that_open_at_once_have_coinciding_edges(sound, look):
+    """No ramp: edges and shoulders of a window are the same places."""
+    cases, _ = sound
+    steep = [case.changed(lambda c: c.motor.valve_plate.window.ramp, 1.0) for case in cases]
+    found = _simulate(*in_lanes(steep), look)
+    assert not np.any(np.asarray(found.cycle.verdict.code))
+    errors = worst_errors(steep, _summarise(found, 600, look.oversampling))
+    assert errors["mean_torque"] < 1e-4

@@ -100,12 +100,11 @@ class KeptProgram(Generic[Arguments, Result]):
     def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
         folder = programs_folder()
         leaves, structure = jax.tree.flatten((args, kwargs))
-        traced = any(isinstance(leaf, jax.core.Tracer) for leaf in leaves)
-        if traced or not folder or any(map(_setting, DEBUGGING)):
+        if not folder or no_tracing(leaves):
             return self._traced(*args, **kwargs)
-        key = structure, *(_seen(leaf) for leaf in leaves)
+        key = structure, *(seen(leaf) for leaf in leaves)
         program = self._programs.get(key)
-        arrays = [leaf for leaf in leaves if _is_array(leaf)]
+        arrays = [leaf for leaf in leaves if is_array(leaf)]
         if program is None:
             program = self._found(key, Path(folder), (args, kwargs), arrays)
         return self._traced(*args, **kwargs) if program is None else program(arrays)
@@ -121,55 +120,85 @@ class KeptProgram(Generic[Arguments, Result]):
                 return None
             if key not in self._programs:
                 try:
-                    path = folder / f"{self._function.__name__}-{self._name(given)}{SUFFIX}"
+                    name = program_name(self._function, given, self._options)
+                    path = folder / f"{self._function.__name__}-{name}{SUFFIX}"
                 except Indescribable:
                     self._others.add(key)
                     return None
                 self._programs[key] = _loaded(path, arrays) or self._compiled(path, given, arrays)
             return self._programs[key]
 
-    def _name(self, given: Any) -> str:
-        words = f"{made_with()}{described(self._function)}{self._options}{described(given)}"
-        return hashlib.sha256(words.encode()).hexdigest()[:40]
-
     def _compiled(self, path: Path, given: Any, arrays: list[Any]) -> Program:
-        leaves, structure = jax.tree.flatten(given)
-        result = None
-
-        def between_arrays(chosen: list[Any]) -> list[Any]:
-            nonlocal result
-            places = iter(chosen)
-            filled = [next(places) if _is_array(leaf) else leaf for leaf in leaves]
-            args, kwargs = jax.tree.unflatten(structure, filled)
-            answer = self._function(*args, **kwargs)
-            result = jax.tree.map(lambda leaf: _Place() if _is_array(leaf) else leaf, answer)
-            return [leaf for leaf in jax.tree.leaves(answer) if _is_array(leaf)]
-
-        between_arrays.__name__ = self._function.__name__  # in JAX's logs and profiles
-        lowered = jax.jit(between_arrays).lower(arrays)
+        function, result = between_arrays(self._function, given)
+        lowered = jax.jit(function).lower(arrays)
         with jax_store_unused():
             compiled = lowered.compile(compiler_options=self._options)
-        _keep(path, compiled, result)
-        return Program(compiled, result)
+        with contextlib.suppress(Exception):  # what cannot be kept is compiled once more
+            keep(path, (*serialize(compiled), result.tree))
+        return Program(compiled, result.tree)
 
 
-def _is_array(leaf: Any) -> bool:
+class Outcome:
+    """The tree of a function's result, known once the function has been traced."""
+
+    tree: Any = None
+
+
+def between_arrays(function: Callable, given: Any) -> tuple[Callable[[list], list], Outcome]:
+    """A function of the arrays in some arguments alone, all else being part of it.
+
+    What comes back besides it is filled in when the function is traced.
+    """
+    leaves, structure = jax.tree.flatten(given)
+    outcome = Outcome()
+
+    def called(chosen: list[Any]) -> list[Any]:
+        places = iter(chosen)
+        filled = [next(places) if is_array(leaf) else leaf for leaf in leaves]
+        args, kwargs = jax.tree.unflatten(structure, filled)
+        answer = function(*args, **kwargs)
+        outcome.tree = jax.tree.map(lambda leaf: _Place() if is_array(leaf) else leaf, answer)
+        return [leaf for leaf in jax.tree.leaves(answer) if is_array(leaf)]
+
+    called.__name__ = function.__name__  # in JAX's logs and profiles
+    return called, outcome
+
+
+def program_name(function: Callable, given: Any, options: object) -> str:
+    """A name for the program that some arguments need.
+
+    Raises
+    ------
+    Indescribable
+        Where the program depends on something that has no lasting name.
+    """
+    words = f"{made_with()}{described(function)}{options}{described(given)}"
+    return hashlib.sha256(words.encode()).hexdigest()[:40]
+
+
+def no_tracing(leaves: list[Any]) -> bool:
+    """Whether a function must run as it stands: within another, or to look for a mistake."""
+    within = any(isinstance(leaf, jax.core.Tracer) for leaf in leaves)
+    return within or any(map(_setting, DEBUGGING))
+
+
+def is_array(leaf: Any) -> bool:
+    """Whether a leaf is traced; all others are part of the program."""
     return isinstance(leaf, jax.Array | np.ndarray | np.generic)
 
 
-def _seen(leaf: Any) -> Hashable:
+def seen(leaf: Any) -> Hashable:
     """What of a leaf makes another program."""
-    if _is_array(leaf):
+    if is_array(leaf):
         return leaf.shape, leaf.dtype, getattr(leaf, "weak_type", False)
     return type(leaf), leaf
 
 
-def _keep(path: Path, compiled: jax.stages.Compiled, result: Any) -> None:
+def keep(path: Path, content: Any) -> None:
     """Writes a program under its name at once or not at all; a full disk is no error."""
     with contextlib.suppress(Exception):  # whatever could not be kept is compiled once more
-        content = zlib.compress(pickle.dumps((*serialize(compiled), result)), 1)
         draft = path.with_suffix(f".{os.getpid()}{threading.get_ident()}")
-        draft.write_bytes(content)
+        draft.write_bytes(zlib.compress(pickle.dumps(content), 1))
         draft.replace(path)
         for each in path.parent.glob(f"*{SUFFIX}"):
             if time.time() - each.stat().st_mtime > UNUSED_SECONDS:

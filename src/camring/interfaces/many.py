@@ -7,7 +7,8 @@ processor core takes one block after another. Motors that cannot be simulated in
 """
 
 import os
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -17,22 +18,26 @@ import numpy as np
 from jaxtyping import Float
 
 from camring.interfaces.errors import InputError
+from camring.interfaces.lane_program import LaneProgram, native
 from camring.interfaces.motor_program import motor_program
+from camring.metrics.summary import Metrics
 from camring.objective.design_space import AbstractSpace
 from camring.objective.lanes import (
     ManySlopes,
     designs_in_lanes,
-    judge_designs,
+    designs_with_slopes,
+    faults_of,
+    measure_designs,
+    say_of_designs,
     slopes_of_designs,
-    solve_designs,
-    summarise_designs,
+    solve_and_measure_designs,
 )
 from camring.objective.objective import Assessment, Goal, evaluate
 from camring.physics.lane_cycle import LaneCycle, LanesLook, fits
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
-CHUNK = 256
+CHUNK = 1024
 """Designs side by side in one call of a program."""
 
 FEW = 8
@@ -91,18 +96,42 @@ def evaluate_many(
     look = look or LanesLook.search()
     judge_chunk = _in_lanes if fits(system.motor) else _one_by_one
     judged = _judged_by(judge_chunk, space, system, goal, look, chunk)
-    first = judged(points[:chunk])  # by itself: side by side every thread would compile
-    whole = jax.tree.map(lambda leaf: np.empty((*leaf.shape[:-1], len(points)), leaf.dtype), first)
+    whole = _Whole(len(points))
 
-    def keep(start: int, part: Assessment) -> None:
-        for place, leaf in zip(jax.tree.leaves(whole), jax.tree.leaves(part), strict=True):
-            place[..., start : start + chunk] = leaf
+    def keep(start: int) -> None:
+        whole.keep(start, judged(points[start : start + chunk]))
 
-    keep(0, first)
+    starts = range(0, len(points), chunk)
+    program = jax.tree.structure((space, system)), goal, look, chunk, native()
+    if program not in _compiled:  # side by side every thread would compile
+        keep(starts[0])
+        starts = starts[1:]
+        _compiled.add(program)
     with ThreadPoolExecutor(threads or cores()) as pool:
-        rest = range(chunk, len(points), chunk)
-        list(pool.map(lambda start: keep(start, judged(points[start : start + chunk])), rest))
-    return whole
+        list(pool.map(keep, starts))
+    return whole.result
+
+
+_compiled: set[Hashable] = set()
+
+
+class _Whole:
+    """Results of chunks, put together as they come."""
+
+    def __init__(self, designs: int) -> None:
+        self._designs = designs
+        self._first = threading.Lock()
+        self.result: Any = None
+
+    def keep(self, start: int, part: Assessment) -> None:
+        with self._first:
+            if self.result is None:
+                self.result = jax.tree.map(self._room, part)
+        for place, leaf in zip(jax.tree.leaves(self.result), jax.tree.leaves(part), strict=True):
+            place[..., start : start + leaf.shape[-1]] = leaf
+
+    def _room(self, leaf: np.ndarray) -> np.ndarray:
+        return np.empty((*leaf.shape[:-1], self._designs), leaf.dtype)
 
 
 def _judged_by(
@@ -114,28 +143,39 @@ def _judged_by(
     chunk: int,
 ) -> Callable[[Points], Assessment]:
     def judged(some: Points) -> Assessment:
-        missing = chunk - len(some)
-        padded = np.concatenate([some, np.broadcast_to(some[:1], (missing, some.shape[1]))])
-        found = jax.device_get(judge_chunk(space, system, goal, padded, look))
+        found = jax.device_get(judge_chunk(space, system, goal, _padded(some, chunk), look))
         return jax.tree.map(lambda leaf: leaf[..., : len(some)], found)
 
     return judged
 
 
+def _padded(points: Points, count: int) -> Points:
+    missing = count - len(points)
+    return np.concatenate([points, np.broadcast_to(points[:1], (missing, points.shape[1]))])
+
+
 def _in_lanes(
     space: AbstractSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> Assessment:
-    return judge_and_keep(space, system, goal, points, look)[1]
+    designs = _designs(space, system, jnp.asarray(points))
+    metrics, faults = _measure(designs, goal.harmonics, look)
+    return _judged(designs, metrics, faults, goal)
+
+
+def _judged(
+    designs: System, metrics: tuple[Metrics, ...], faults: jax.Array, goal: Goal
+) -> Assessment:
+    said = _judge(designs, metrics, faults, goal)
+    return Assessment(**{**vars(said), "metrics": metrics, "faults": faults})
 
 
 def judge_and_keep(
     space: AbstractSpace, system: System, goal: Goal, points: Points, look: LanesLook
 ) -> tuple[tuple[LaneCycle, ...], Assessment]:
-    """Some points side by side, a program for each number of them; and what was solved."""
+    """Some points side by side; and what was solved."""
     designs = _designs(space, system, jnp.asarray(points))
-    cycles = _solve(designs, look)
-    metrics = _summarise(cycles, goal, look)
-    return cycles, _judge(designs, cycles, metrics, goal)
+    cycles, metrics = _solve(designs, goal.harmonics, look)
+    return cycles, _judged(designs, metrics, _faults(cycles), goal)
 
 
 def slopes_in_lanes(
@@ -149,15 +189,17 @@ def slopes_in_lanes(
     results: tuple[str, ...] = (),
 ) -> ManySlopes:
     """`objective.lanes.slopes_of_designs` of what `judge_and_keep` solved, as NumPy arrays."""
-    at = jnp.asarray(points)
-    return jax.device_get(_slopes(space, system, at, cycles, goal, look, first, results))
+    designs, along = _designs_with_slopes(space, system, jnp.asarray(points), first)
+    return jax.device_get(_slopes(designs, along, cycles, goal, look, results))
 
 
 _designs = motor_program(designs_in_lanes, _OPTIONS)
-_solve = motor_program(solve_designs, _OPTIONS)
-_summarise = motor_program(summarise_designs, _OPTIONS)
-_judge = motor_program(judge_designs, _OPTIONS)
-_slopes = motor_program(slopes_of_designs, _OPTIONS)
+_measure = LaneProgram(measure_designs, _OPTIONS)
+_solve = LaneProgram(solve_and_measure_designs, _OPTIONS)
+_faults = motor_program(faults_of, _OPTIONS)
+_judge = motor_program(say_of_designs, _OPTIONS)
+_designs_with_slopes = motor_program(designs_with_slopes, _OPTIONS)
+_slopes = LaneProgram(slopes_of_designs, _OPTIONS)
 
 
 @motor_program

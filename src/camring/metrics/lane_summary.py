@@ -8,7 +8,6 @@ one matrix product. Pistons are added by folding the period before it.
 """
 
 from dataclasses import replace
-from math import pi
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -23,7 +22,8 @@ from camring.metrics.power_balance import power_balance
 from camring.metrics.spectrum import QuadratureSamples
 from camring.metrics.summary import Measured, Metrics, results
 from camring.numerics.extremum import vertex_value
-from camring.numerics.lane_mesh import locate_in_lanes, positions
+from camring.numerics.lane_fourier import power_of_orders
+from camring.numerics.lane_mesh import locate_round, positions
 from camring.numerics.lanes import take
 from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
@@ -62,9 +62,9 @@ def summarise_lanes(found: LaneCycle, highest_order: int = 600, oversampling: in
         power=replace(power_balance(cycle, samples), line_loss=zero),
         mean_torque=motor.pistons * samples.mean(piston.torque),
         mean_gauge_pressure=samples.mean(piston.chamber_pressure) - point.return_pressure,
-        torque_power=_power(torque, of_sum),
-        pressure_power=_power(around.chamber_pressure, orders),
-        flow_power=_power(flow, of_sum),
+        torque_power=power_of_orders(torque, of_sum),
+        pressure_power=power_of_orders(around.chamber_pressure, orders),
+        flow_power=power_of_orders(flow, of_sum),
         torque_span=_largest_sample(torque) + _largest_sample(-torque),
         lowest_radius=lowest,
         highest_radius=highest,
@@ -127,12 +127,11 @@ def _at_fixed_places(cycle: Cycle, highest_order: int, oversampling: int) -> Wav
     motor, orbit, period = cycle.motor, cycle.orbit, cycle.motor.cam.period
     phases = motor.distinct_phases
     wanted = max(oversampling * (highest_order // motor.cam.repeats), 256)
-    count = phases * -(-wanted // phases)
+    parts = 4 * phases  # a quarter of what any sum of pistons repeats
+    count = parts * -(-wanted // parts)
     lanes = orbit.node_state.shape[-1]
     angle = jnp.broadcast_to(jnp.arange(count)[:, None] * (period / count), (count, lanes))
-    # The mesh covers a period that begins at its first breakpoint.
-    within = angle + jnp.where(angle < orbit.mesh.start[:1], period, 0)
-    element, fraction = locate_in_lanes(orbit.mesh, within)
+    element, fraction = locate_round(orbit.mesh, count, period)
     powers = computed_once(orbit.coefficients)
     state = horner([take(each, element) for each in powers], fraction)
     radius = radius_around(radial(motor), np.arange(count) / count)
@@ -149,14 +148,6 @@ def _of_all_pistons(
     phases = motor.distinct_phases
     parts = wave.reshape(phases, -1, wave.shape[-1])
     return motor.pistons // phases * jnp.sum(parts, axis=0)
-
-
-def _power(wave: Float[Array, "place lane"], orders: int) -> Float[Array, " lane"]:
-    """Sum of squared Fourier coefficients of orders 1 to `orders` of equidistant samples."""
-    count = wave.shape[0]
-    phase = 2 * pi / count * np.outer(np.arange(1, orders + 1), np.arange(count))
-    transform = np.concatenate([np.cos(phase), np.sin(phase)]) / count
-    return jnp.sum((jnp.asarray(transform) @ wave) ** 2, axis=0)
 
 
 def _largest_sample(wave: Float[Array, "place lane"]) -> Float[Array, " lane"]:

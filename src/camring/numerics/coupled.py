@@ -164,7 +164,10 @@ def _newton(
     def improved(current: Float[Array, "3 state element"]) -> Float[Array, "3 state element"]:
         return coupled_step(equation, at_stages, width, current)[1]
 
-    return damped_newton(improved, own_extent, stages, tolerance, ITERATIONS)
+    def share(step: Array, reached: Array) -> Array:
+        return jnp.max(jnp.abs(step)) / own_extent(reached)
+
+    return damped_newton(improved, share, stages, tolerance, ITERATIONS)
 
 
 def _orbit(

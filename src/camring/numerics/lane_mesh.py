@@ -9,9 +9,9 @@ decided by a branch.
 import jax.numpy as jnp
 import numpy as np
 from jax.lax import stop_gradient
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
-from camring.numerics.lanes import interpolate, locate, running_total, take
+from camring.numerics.lanes import interpolate, reached, running_total, take
 from camring.numerics.mesh import LAYER_ELEMENTS, Mesh, graded_fractions
 
 Rows = Float[Array, "breakpoint lane"]
@@ -36,42 +36,60 @@ def equidistribute_lanes(
     layer: Rows,
     period: float,
     elements: int,
-) -> Mesh:
+) -> tuple[Mesh, Int[Array, "element lane"]]:
     """Meshes whose elements hold equal shares of the density on a graded mesh.
 
     Behind a sharp breakpoint (1, else 0; as many in every lane) lie two thin elements, of
     three and nine relaxation lengths `layer`, unless ordinary elements are as thin.
+
+    Returns the meshes, and in which element of the graded mesh each of their own begins.
     """
-    segments = breakpoints.shape[0]
+    each = graded.start.shape[0] // breakpoints.shape[0]
     mass = running_total(density * graded.width)
     node = jnp.concatenate([graded.start, breakpoints[:1] + period])
-    mass_at = mass[:: graded.start.shape[0] // segments]
+    mass_at = mass[::each]
     thin = LAYER_ELEMENTS * sharp
     promised = running_total(1 + thin)
     first = jnp.round(mass_at / mass_at[-1] * (elements - promised[-1])) + promised
     ordinary = first[1:] - first[:-1] - thin
     share = (mass_at[1:] - mass_at[:-1]) / ordinary
-    end = _ends(breakpoints, period)
     # Behind the layer the first ordinary element gives up the layer's length.
     one_share = interpolate(mass_at[:-1] + share, mass, node)
+    end = _ends(breakpoints, period)
     first_width = jnp.where(ordinary == 1, end, jnp.clip(one_share, breakpoints, end)) - breakpoints
+    nearest = breakpoints + jnp.minimum(3 * layer, first_width / 8)
+    nearer = breakpoints + jnp.minimum(12 * layer, first_width / 2)
+    first = first[:-1]
 
-    number = jnp.arange(elements, dtype=float)[:, None]
-    number = jnp.broadcast_to(number, (elements, breakpoints.shape[-1]))
-    segment = locate(first[:-1], number)
-    from_first = number - take(first[:-1], segment)
-    past_thin = from_first - take(thin, segment)
-    wanted = take(mass_at[:-1], segment) + jnp.maximum(past_thin, 0) * take(share, segment)
-    behind, ahead = take(breakpoints, segment), take(end, segment)
-    start = jnp.clip(interpolate(wanted, mass, node), behind, ahead)
-    nearest = take(jnp.minimum(3 * layer, first_width / 8), segment)
-    nearer = take(jnp.minimum(12 * layer, first_width / 2), segment)
-    start = jnp.where(past_thin == 0, behind + nearer, start)
-    start = jnp.where(past_thin == -1, behind + nearest, start)
-    is_first = from_first == 0
-    start = jnp.where(is_first, behind, start)
+    # Each node of the graded mesh lies behind so many new ones: those of the segments
+    # before, of the layer, and the ordinary ones that have had their share.
+    position = graded.start
+
+    def at(rows: Rows) -> Float[Array, "element lane"]:
+        return _repeated(rows, each)
+
+    shares = (mass[:-1] - at(mass_at[:-1])) / at(jnp.where(share > 0, share, 1))
+    past = jnp.clip(jnp.ceil(shares) - 1, 0, at(ordinary) - 1)
+    past = past + (position > at(breakpoints))
+    past = past + at(sharp) * ((position > at(nearest)) + 1.0 * (position > at(nearer)))
+    within = reached(at(first) + past, elements) - 1
+
+    segment = reached(first, elements) - 1
+    past_thin = jnp.arange(elements, dtype=float)[:, None] - take(first + thin, segment)
+    wanted = take(mass_at[:-1], segment) + past_thin * take(share, segment)
+    start = take(node[:-1], within) + (wanted - take(mass[:-1], within)) / take(density, within)
+    start = jnp.where(past_thin == 0, take(nearer, segment), start)
+    start = jnp.where(past_thin == -1, take(nearest, segment), start)
+    before = jnp.concatenate([jnp.full_like(segment[:1], -1), segment[:-1]])
+    is_first = segment != before
+    start = jnp.where(is_first, take(breakpoints, segment), start)
     following = jnp.concatenate([start[1:], breakpoints[:1] + period])
-    return Mesh(start, jnp.maximum(following - start, 0), is_first)
+    return Mesh(start, jnp.maximum(following - start, 0), is_first), within
+
+
+def _repeated(rows: Rows, times: int) -> Float[Array, "row lane"]:
+    count, lanes = rows.shape
+    return jnp.broadcast_to(rows[:, None], (count, times, lanes)).reshape(-1, lanes)
 
 
 def follow_in_lanes(mesh: Mesh, breakpoints: Rows, period: float) -> Mesh:
@@ -91,13 +109,24 @@ def positions(mesh: Mesh, fraction: Float[Array, " point"]) -> Float[Array, "poi
     return mesh.start + fraction[:, None, None] * mesh.width
 
 
-def locate_in_lanes(
-    mesh: Mesh, position: Float[Array, "wanted lane"]
-) -> tuple[Array, Float[Array, "wanted lane"]]:
-    """Element number and fraction of positions within the period that each mesh covers."""
-    element = locate(mesh.start, position)
+def locate_round(
+    mesh: Mesh, count: int, period: float
+) -> tuple[Int[Array, "place lane"], Float[Array, "place lane"]]:
+    """Element and fraction of `count` places round the period, equally far apart from 0 on.
+
+    Each mesh covers a period of its own, which begins at its first node.
+    """
+    elements = mesh.start.shape[0]
+    passed = jnp.ceil(mesh.start * (count / period))
+    beyond = passed >= count
+    behind = jnp.sum(beyond, axis=0, dtype=jnp.int32)
+    element = reached(jnp.where(beyond, passed - count, passed), count) - 1 - behind
+    element = jnp.where(element < 0, element + elements, element)
+    place = jnp.arange(count)[:, None] * (period / count)
+    offset = place - take(mesh.start, element)
+    # But for rounding, what lies before its element lies behind it one period later.
+    offset = jnp.where(offset < -1e-9 * period, offset + period, offset)
     width = take(mesh.width, element)
-    offset = position - take(mesh.start, element)
     return element, jnp.where(width > 0, offset / jnp.where(width > 0, width, 1), 1)
 
 

@@ -13,6 +13,7 @@ Newton stops when the slowest lane has converged, at most after `limit` steps; a
 that has not says so by its residual and drags nobody along for longer.
 """
 
+from functools import reduce
 from typing import NamedTuple
 
 import jax
@@ -25,15 +26,15 @@ from camring.numerics.lane_mesh import (
     equidistribute_lanes,
     follow_in_lanes,
     graded_lanes,
-    locate_in_lanes,
-    positions,
 )
 from camring.numerics.lanes import take
 from camring.numerics.mesh import Mesh, fourth_derivative_density
 from camring.numerics.newton import damped_newton
 from camring.numerics.once import computed_once
-from camring.numerics.periodic import Orbit, collocation_residual, extent, newton_step
+from camring.numerics.periodic import Orbit, collocation_residual, eliminate, extent
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, element_powers, horner
+
+Rows = Float[Array, "element lane"]
 
 
 class LaneResolution(NamedTuple):
@@ -46,7 +47,7 @@ class LaneResolution(NamedTuple):
     tolerance: float = 1e-4
     """Newton stops when its step is this small against the range of the orbit; it is
     quadratic, and one more step follows."""
-    rough_tolerance: float = 5e-2
+    rough_tolerance: float = 0.2
     """The same on the first mesh, which only serves to lay the other."""
     limit: int = 20
     """Newton steps at most on each mesh."""
@@ -90,17 +91,17 @@ def solve_lanes(
     stages = frozen.guess(at_stages)
     limit = resolution.limit
     stages, _ = _newton(frozen, at_stages, rough, stages, resolution.rough_tolerance, limit)
-    node_state, stages = newton_step(frozen, at_stages, rough, stages)
+    node_state, found = _step(frozen, at_stages, rough, list(stages))
+    stages = jnp.stack(found)
     powers = computed_once(element_powers(node_state, stages))
 
     density = fourth_derivative_density(rough, powers[3], extent(stages), period)
     layer = _layer_width(frozen, rough, node_state, period, resolution.per_segment)
     density, layer = computed_once((density, layer))
-    mesh = equidistribute_lanes(
-        rough, density, breakpoints, sharp, layer, period, resolution.elements
+    mesh, within = computed_once(
+        equidistribute_lanes(rough, density, breakpoints, sharp, layer, period, resolution.elements)
     )
-    mesh = computed_once(mesh)
-    stages = _sampled(rough, powers, positions(mesh, jnp.asarray(STAGES)))
+    stages = _carried_over(rough, powers, mesh, within)
     at_stages = computed_once(frozen.forcing(mesh, jnp.asarray(STAGES)))
     stages, count = _newton(frozen, at_stages, mesh, stages, resolution.tolerance, limit)
     return _settled(frozen, at_stages, mesh, stages, count)
@@ -127,8 +128,8 @@ def _settled(
     stages: Float[Array, "3 element lane"],
     iterations: Int[Array, ""],
 ) -> LaneOrbit:
-    node_state, stages = newton_step(equation, at_stages, mesh, stages)
-    node_state, stages = computed_once((node_state, stages))
+    node_state, found = _step(equation, at_stages, mesh, list(stages))
+    node_state, stages = computed_once((node_state, jnp.stack(found)))
     rate, slope = equation.rate_and_slope(at_stages, stages)
     residual = collocation_residual(list(rate), mesh, node_state, stages)
     weight = STAGE_INTEGRALS[-1][:, None, None] * mesh.width
@@ -144,21 +145,47 @@ def _newton(
     tolerance: float,
     limit: int,
 ) -> tuple[Float[Array, "3 element lane"], Int[Array, ""]]:
-    def improved(current: Float[Array, "3 element lane"]) -> Float[Array, "3 element lane"]:
-        return newton_step(equation, at_stages, mesh, current)[1]
+    def improved(current: list[Rows]) -> list[Rows]:
+        return _step(equation, at_stages, mesh, current)[1]
 
-    return damped_newton(improved, extent, stages, tolerance, limit)
+    found, count = damped_newton(improved, _share_of_range, list(stages), tolerance, limit)
+    return jnp.stack(found), count
 
 
-def _sampled(
-    mesh: Mesh,
+def _step(
+    equation: Equation, at_stages: Forcing, mesh: Mesh, stages: list[Rows]
+) -> tuple[Rows, list[Rows]]:
+    """`newton_step` with each of the three stages by itself: all of it is one loop."""
+    found = [
+        equation.rate_and_slope(jax.tree.map(lambda leaf, k=k: leaf[k], at_stages), stage)
+        for k, stage in enumerate(stages)
+    ]
+    value, slope = (list(each) for each in zip(*found, strict=True))
+    return eliminate(value, slope, mesh, stages)
+
+
+def _share_of_range(step: list[Rows], stages: list[Rows]) -> Float[Array, " lane"]:
+    """The largest part of a step, over the range of the stages."""
+    largest = reduce(jnp.maximum, [jnp.max(jnp.abs(each), axis=0) for each in step])
+    highest = reduce(jnp.maximum, [jnp.max(each, axis=0) for each in stages])
+    lowest = reduce(jnp.minimum, [jnp.min(each, axis=0) for each in stages])
+    return largest / (highest - lowest + 1e-300)
+
+
+def _carried_over(
+    rough: Mesh,
     powers: Float[Array, "4 element lane"],
-    position: Float[Array, "point element lane"],
-) -> Float[Array, "point element lane"]:
-    """Piecewise cubics at positions within their meshes."""
-    element, fraction = locate_in_lanes(mesh, position.reshape(-1, position.shape[-1]))
-    found = horner([take(each, element) for each in powers], fraction)
-    return found.reshape(position.shape)
+    mesh: Mesh,
+    within: Int[Array, "element lane"],
+) -> Float[Array, "3 element lane"]:
+    """Stages to begin with: straight lines between what a rough solution is at the nodes."""
+    width = take(rough.width, within)
+    offset = mesh.start - take(rough.start, within)
+    # Breakpoints may coincide: then there is nothing between them to look at.
+    fraction = jnp.where(width > 0, offset / jnp.where(width > 0, width, 1), 0)
+    here = horner([take(each, within) for each in powers], fraction)
+    rise = jnp.roll(here, -1, axis=0) - here
+    return here + STAGES[:, None, None] * rise
 
 
 def _layer_width(

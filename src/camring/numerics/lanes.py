@@ -10,6 +10,7 @@ itself.
 
 import jax.numpy as jnp
 import numpy as np
+from jax import lax
 from jaxtyping import Array, Float, Int
 
 
@@ -38,6 +39,33 @@ def locate(
         found = jnp.where((probe < count) & reached, probe, found)
         step >>= 1
     return found
+
+
+_IN_EACH_LANE = lax.ScatterDimensionNumbers(
+    update_window_dims=(),
+    inserted_window_dims=(0,),
+    scatter_dims_to_operand_dims=(0,),
+    operand_batching_dims=(1,),
+    scatter_indices_batching_dims=(1,),
+)
+
+
+def reached(number: Int[Array, "one lane"], rows: int) -> Int[Array, "row lane"]:
+    """How many of each lane's numbers are not above the number of each of so many rows.
+
+    Where it can be said at which row each of some thresholds is passed, this finds all
+    rows' thresholds at once, without a search.
+    """
+    within = jnp.clip(number, 0, rows).astype(jnp.int32)
+    ones = jnp.ones_like(within)
+    counts = lax.scatter_add(
+        jnp.zeros((rows + 1, number.shape[-1]), jnp.int32),
+        within[..., None],
+        ones,
+        _IN_EACH_LANE,
+        mode="promise_in_bounds",
+    )
+    return jnp.cumsum(counts[:-1], axis=0)
 
 
 def interpolate(

@@ -1,17 +1,18 @@
 """Newton on the stage states of a whole period at once, held back where it leaps."""
 
 from collections.abc import Callable
+from typing import TypeVar
 
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
-Stages = Float[Array, "*stages"]
+Stages = TypeVar("Stages")
 
 
 def damped_newton(
     improved: Callable[[Stages], Stages],
-    extent: Callable[[Stages], Float[Array, "*lane"]],
+    share: Callable[[Stages, Stages], Float[Array, "*lane"]],
     stages: Stages,
     tolerance: float | Float[Array, ""],
     limit: int,
@@ -26,9 +27,12 @@ def damped_newton(
     ----------
     improved
         One full Newton step.
-    extent
-        What a step is measured against: `tolerance` is a share of it. One number, or one
-        for each lane where problems lie side by side along the last axis; the worst decides.
+    share
+        How large a step is against the range of the stages that it leads to. One number,
+        or one for each lane where problems lie side by side along the last axis; the worst
+        decides.
+    stages
+        One array, or a tree of several.
     limit
         Steps at most; so many are a sign that it is lost.
     """
@@ -38,16 +42,21 @@ def damped_newton(
         return (size > tolerance) & (count < limit)
 
     def improve(carry: tuple) -> tuple:
-        current, before, share, _, count = carry
+        current, before, part, _, count = carry
         updated = improved(current)
-        step = updated - current
-        leaps = (step * before < 0) & (2 * jnp.abs(step) > jnp.abs(before))
-        share = jnp.where(leaps, share / 2, jnp.minimum(2 * share, 1))
-        size = jnp.max(jnp.max(jnp.abs(step), axis=(0, 1)) / extent(updated))
-        return current + share * step, step, share, size, count + 1
+        step = jax.tree.map(jnp.subtract, updated, current)
+        part = jax.tree.map(_part, step, before, part)
+        onward = jax.tree.map(lambda at, part, step: at + part * step, current, part, step)
+        return onward, step, part, jnp.max(share(step, updated)), count + 1
 
-    start = (stages, jnp.zeros_like(stages), jnp.ones_like(stages))
+    start = stages, jax.tree.map(jnp.zeros_like, stages), jax.tree.map(jnp.ones_like, stages)
     stages, _, _, _, count = jax.lax.while_loop(
         unfinished, improve, (*start, jnp.asarray(jnp.inf), jnp.asarray(0))
     )
     return stages, count
+
+
+def _part(step: Array, before: Array, part: Array) -> Array:
+    """Of its step that each stage takes, after the step before."""
+    leaps = (step * before < 0) & (2 * jnp.abs(step) > jnp.abs(before))
+    return jnp.where(leaps, part / 2, jnp.minimum(2 * part, 1))

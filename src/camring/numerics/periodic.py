@@ -199,6 +199,13 @@ def extent(states: Float[Array, "point element *lane"]) -> Float[Array, "*lane"]
     return jnp.max(states, axis=(0, 1)) - jnp.min(states, axis=(0, 1)) + 1e-300
 
 
+def share_of_range(
+    step: Float[Array, "point element *lane"], states: Float[Array, "point element *lane"]
+) -> Float[Array, "*lane"]:
+    """The largest part of a step, over the range of the states."""
+    return jnp.max(jnp.abs(step), axis=(0, 1)) / extent(states)
+
+
 def _layer_width(
     equation: Equation,
     mesh: Mesh,
@@ -222,10 +229,19 @@ def newton_step(
     Returns node states and stage states.
     """
     value, slope = computed_once(equation.rate_and_slope(at_stages, stages))
-    slope = stop_gradient(slope)
-    defect = [
-        mesh.width * combine(row, list(value)) - stages[i] for i, row in enumerate(STAGE_INTEGRALS)
-    ]
+    node_state, updated = eliminate(list(value), list(slope), mesh, list(stages))
+    return node_state, jnp.stack(updated)
+
+
+def eliminate(
+    value: list[Float[Array, " element"]],
+    slope: list[Float[Array, " element"]],
+    mesh: Mesh,
+    stages: list[Float[Array, " element"]],
+) -> tuple[Float[Array, " element"], list[Float[Array, " element"]]]:
+    """A Newton step from rates and their slopes at each of the three stages."""
+    slope = [stop_gradient(each) for each in slope]
+    defect = [mesh.width * combine(row, value) - stages[i] for i, row in enumerate(STAGE_INTEGRALS)]
     step = stop_gradient(mesh.width)
     matrix = [
         [float(i == j) - step * float(STAGE_INTEGRALS[i, j]) * slope[j] for j in range(3)]
@@ -243,13 +259,12 @@ def newton_step(
         return (product, total), so_far
 
     last = (growth[2], stages[2] + offset[2])
-    unit = (jnp.ones_like(stages[0, 0]), jnp.zeros_like(stages[0, 0]))
+    unit = (jnp.ones_like(stages[0][0]), jnp.zeros_like(stages[0][0]))
     product: Array
     before: Array
     (multiplier, total), (product, before) = jax.lax.scan(compose, unit, last, unroll=8)
     node_state = product * (total / (1 - multiplier)) + before
-    updated = [stages[i] + growth[i] * node_state + offset[i] for i in range(3)]
-    return node_state, jnp.stack(updated)
+    return node_state, [stages[i] + growth[i] * node_state + offset[i] for i in range(3)]
 
 
 def _newton(
@@ -263,7 +278,7 @@ def _newton(
     def improved(current: Float[Array, "3 element"]) -> Float[Array, "3 element"]:
         return newton_step(equation, at_stages, mesh, current)[1]
 
-    return damped_newton(improved, extent, stages, tolerance, limit)
+    return damped_newton(improved, share_of_range, stages, tolerance, limit)
 
 
 def _interpolate(

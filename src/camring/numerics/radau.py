@@ -51,15 +51,24 @@ def horner(powers: Array | list[Array], fraction: Array) -> Array:
 
 
 def solve_stages(matrix: list[list[Array]], *right_sides: list[Array]) -> tuple[list[Array], ...]:
-    """Cramer's rule for the 3 x 3 stage systems of all elements at once."""
+    """Gaussian elimination for the 3 x 3 stage systems of all elements at once.
+
+    Without exchange of rows: where the rate falls with the state, all three leading minors
+    of `1 - width A slope` are sums of positive terms.
+    """
     (a, b, c), (d, e, f), (g, h, i) = matrix
-    cofactors = [
-        [e * i - f * h, c * h - b * i, b * f - c * e],
-        [f * g - d * i, a * i - c * g, c * d - a * f],
-        [d * h - e * g, b * g - a * h, a * e - b * d],
-    ]
-    scale = 1 / (a * cofactors[0][0] + b * cofactors[1][0] + c * cofactors[2][0])
-    return tuple(
-        [scale * (row[0] * right[0] + row[1] * right[1] + row[2] * right[2]) for row in cofactors]
-        for right in right_sides
-    )
+    one = 1 / a
+    down, further = d * one, g * one
+    e, f, h, i = e - down * b, f - down * c, h - further * b, i - further * c
+    two = 1 / e
+    last = h * two
+    three = 1 / (i - last * f)
+
+    def solved(right: list[Array]) -> list[Array]:
+        first, second, third = right
+        second = second - down * first
+        z = three * (third - further * first - last * second)
+        y = two * (second - f * z)
+        return [one * (first - b * y - c * z), y, z]
+
+    return tuple(solved(right) for right in right_sides)

@@ -51,7 +51,7 @@ class LanesLook:
     @classmethod
     def search(cls) -> "LanesLook":
         """For searching: objective terms to about 1e-4."""
-        return cls(64, oversampling=4, tolerance=1e-3, knots=False, per_segment=6)
+        return cls(80, oversampling=8, knots=False, per_segment=6)
 
 
 UNIQUE_DECAY = 1e-8  # what rounding leaves of a period in which nothing is renewed

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q, real
-from camring.numerics.smooth import tanh_ratio
+from camring.numerics.smooth import signed_root, tanh_ratio
 from camring.physics.fluid import AbstractFluid
 
 
@@ -58,8 +58,8 @@ class TurbulentOrifice(AbstractOrifice):
         density: Q[Float[Array, "*grid"], "kg/m3"],
         fluid: AbstractFluid,
     ) -> Q[Float[Array, "*grid"], "m3/s"]:
-        softened = jnp.sqrt(jnp.sqrt(drop**2 + fluid.transition_pressure**2))
-        return self.discharge_coefficient * area * jnp.sqrt(2 / density) * drop / softened
+        root = signed_root(drop, fluid.transition_pressure)
+        return self.discharge_coefficient * area * jnp.sqrt(2 / density) * root
 
     def gain(
         self, area: Q[Float[Array, ""], "m2"], fluid: AbstractFluid
