@@ -5,8 +5,10 @@
 The designs are random points of the wheel motor's design space at its first operating
 point; every result of model.md section 10, the objective and all constraints are
 computed. Rivals in the same run: SciPy's LSODA at tolerance 1e-9 giving the same results,
-and this program's own solver of one motor under `vmap`, which is how batches went
-before. Errors are against that solver at 640 elements, 64 designs.
+this program's own solver of one motor under `vmap`, and lanes as JAX compiles them,
+256 at a time. Times are by the clock, all threads at work, unless they are called
+processor time: that is of one call, all its threads added up. Errors are against the
+solver of one motor at 640 elements.
 """
 
 import argparse
@@ -14,7 +16,8 @@ import json
 import os
 import resource
 import time
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -22,95 +25,74 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from stopwatch import wall_times
+from stopwatch import processor_times, wall_times
+from wheel_motor import as_given, at_one_point, free_ring, of_twenty_variables, with_air
 
-import camring
 from camring.interfaces.compiled import slopes as slopes_alone
 from camring.interfaces.compiled import solve
-from camring.interfaces.many import CHUNK, evaluate_many
+from camring.interfaces.lane_program import SWITCH, LaneProgram
+from camring.interfaces.many import CHUNK, cores, evaluate_many, judge_and_keep, slopes_in_lanes
 from camring.metrics.independent import independent_results
-from camring.metrics.lane_summary import summarise_lanes
 from camring.metrics.summary import summarise
 from camring.objective.design_space import DesignSpace
-from camring.objective.lanes import designs_in_lanes, slopes_of_designs, solve_designs
+from camring.objective.lanes import measure_designs
 from camring.objective.objective import Goal, evaluate
-from camring.physics.aerated_fluid import AeratedFluid
 from camring.physics.cycle import simulate
 from camring.physics.lane_cycle import LanesLook
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
 
-ROOT = Path(__file__).parents[1]
-RESULTS = Path(__file__).with_name("results")
+RESULTS = Path(__file__).with_name("results") / "batch_speed.json"
 LOOKS = {"search": LanesLook.search(), "final": LanesLook()}
+RESOLUTIONS = {"search": Resolution.coarse(), "final": Resolution()}
 OF_OBJECTIVE = ("torque_ripple", "pressure_ripple", "efficiency", "jerk_objective")
 EXTREMES = ("max_pressure", "max_contact_stress")
+JAX_CHUNK = 256
+SOME = 256
+"""Designs where times are long, or counted by processor."""
 
-
-def fastest(action: Callable[[], object], repeats: int = 3) -> float:
-    return wall_times(action, repeats)[0]
-
-
-def with_air(system: System) -> System:
-    oil = system.fluid
-    air = AeratedFluid(oil.density, oil.bulk_modulus, oil.vapour_pressure, oil.transition_pressure)
-    return eqx.tree_at(lambda each: each.fluid, system, air)
-
-
-def free_ring(system: System) -> System:
-    """The same motor, its ring described lobe by lobe."""
-    cam = system.motor.cam
-    ring = type(cam)(jnp.tile(cam.control_radii, cam.repeats), repeats=1, degree=cam.degree)
-    return eqx.tree_at(lambda each: each.motor.cam, system, ring)
+Given = tuple[DesignSpace, System, Goal]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--designs", type=int, default=20_000)
     parser.add_argument("--million", action="store_true", help="judge a million designs as well")
+    parser.add_argument("--json", type=Path, default=RESULTS, help="where the figures go, too")
     asked = parser.parse_args()
 
-    motor_file = camring.read_motor_file(ROOT / "examples" / "wheel_motor.toml")
-    goal, space = motor_file.goal, motor_file.design_space
-    system = eqx.tree_at(
-        lambda each: each.operating_points,
-        motor_file.system,
-        motor_file.system.operating_points[:1],
-    )
-    points = np.random.default_rng(0).uniform(size=(asked.designs, space.dimension))
-    rows: dict[str, float] = {}
+    file = as_given()
+    given = file.design_space, at_one_point(file.system), file.goal
+    points = points_of(given, asked.designs)
     of_million = None
     if asked.million:  # first, while the process holds nothing else
-        of_million = million(space, system, goal)
+        of_million = million(given)
         print("A million designs: {:.3g} s, {:.2f} GiB at most.\n".format(*of_million))
 
-    motor, fluid, point = system.motor, system.fluid, system.operating_points[0]
-    rival = fastest(lambda: independent_results(motor, fluid, point, goal.harmonics, 1e-9), 1)
-    rows["SciPy LSODA, tolerance 1e-9"] = rival
-    some = points[:256]
-    for name, resolution in (("search", Resolution.coarse()), ("final", Resolution())):
-        rows[f"one by one under vmap, {name}"] = alone(space, system, goal, some, resolution)
-    for rung, of_rung in (("", system), (", with air", with_air(system))):
-        for name, look in LOOKS.items():
-            most = points if name == "search" and not rung else points[: len(points) // 4]
-            judged = partial(evaluate_many, space, of_rung, goal, most, look)
-            rows[f"in lanes, {name}{rung}"] = fastest(judged) / len(most)
-    rows["slopes by 11 variables, search"] = slopes(space, system, goal, some, LOOKS["search"])
-    rows["in lanes, cycles and results alone, search"] = solved(repeated(system))
-    rows["the same of a free ring of 6 lobes"] = solved(repeated(free_ring(system)))
-
-    print(f"{os.cpu_count()} cores")
+    rows = speeds(given, points)
+    rival = next(iter(rows.values()))
+    print(f"{cores()} cores")
     print("| what | a design | designs a second | times faster than SciPy |\n|---|---|---|---|")
     for name, value in rows.items():
-        print(f"| {name} | {1e6 * value:.4g} µs | {1 / value:,.0f} | {rival / value:,.0f} |")
+        print(f"| {name} | {microseconds(value)} | {1 / value:,.0f} | {rival / value:,.0f} |")
 
-    errors = accuracy(space, system, goal, points[:64])
+    costs = slope_costs(given)
+    print("\n| slopes, search, processor time | evaluation | slopes | ratio |\n|---|---|---|---|")
+    for name, (once, slopes) in costs.items():
+        print(f"| {name} | {microseconds(once)} | {microseconds(slopes)} | {slopes / once:.3g} |")
+
+    rings = ring_costs(given[1])
+    print("\n| cycles and results, search, processor time | a design | ratio |\n|---|---|---|")
+    for name, value in rings.items():
+        print(f"| {name} | {microseconds(value)} | {value / rings['lobe']:.3g} |")
+
+    errors = accuracy(given, points[:64])
     print("\n| resolution | objective terms, median and worst | mean torque | extremes |")
     print("|---|---|---|---|")
     for name, found in errors.items():
         print(f"| {name} | " + " | ".join(found) + " |")
 
-    off = slope_errors(space, system, goal, points[:32])
+    off = slope_errors(given, points[:32])
     print("\n| slopes of 32 designs | off by, of the objective's largest: median | worst |")
     print("|---|---|---|")
     for name, value in off.items():
@@ -118,87 +100,112 @@ def main() -> None:
 
     growth = {}
     for count in (CHUNK, 4 * CHUNK, 16 * CHUNK, 64 * CHUNK):
-        many = np.resize(points, (count, space.dimension))
-        growth[count] = fastest(lambda many=many: evaluate_many(space, system, goal, many), 2)
+        many = np.resize(points, (count, points.shape[1]))
+        growth[count] = wall_times(partial(evaluate_many, *given, many), 2)[0]
     print("\n| designs | seconds |\n|---|---|")
     for count, value in growth.items():
         print(f"| {count:,} | {value:.3g} |")
-    RESULTS.mkdir(exist_ok=True)
     written = {
         "seconds": rows,
+        "slope_seconds": costs,
+        "ring_seconds": rings,
         "errors": errors,
         "slopes": off,
         "growth": growth,
         "million": of_million,
     }
-    (RESULTS / "batch_speed.json").write_text(json.dumps(written, indent=1) + "\n")
+    asked.json.parent.mkdir(exist_ok=True)
+    asked.json.write_text(json.dumps(written, indent=1) + "\n")
 
 
-def million(space: DesignSpace, system: System, goal: Goal) -> tuple[float, float]:
+def microseconds(seconds: float) -> str:
+    return f"{1e6 * seconds:,.{1 if seconds < 1e-4 else 0}f} µs"
+
+
+def points_of(given: Given, count: int, seed: int = 0) -> np.ndarray:
+    return np.random.default_rng(seed).uniform(size=(count, given[0].dimension))
+
+
+@contextmanager
+def compiled_by_jax() -> Iterator[None]:
+    """Within it, lanes go through JAX's compiler."""
+    before = os.environ.get(SWITCH)
+    os.environ[SWITCH] = "off"
+    try:
+        yield
+    finally:
+        del os.environ[SWITCH]
+        if before is not None:
+            os.environ[SWITCH] = before
+
+
+def million(given: Given) -> tuple[float, float]:
     """Seconds that a million designs take, compilation included, and GiB of memory."""
-    many = np.random.default_rng(1).uniform(size=(1_000_000, space.dimension))
+    many = points_of(given, 1_000_000, seed=1)
     started = time.perf_counter()
-    evaluate_many(space, system, goal, many)
+    evaluate_many(*given, many)
     seconds = time.perf_counter() - started
     return seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
 
 
-def alone(
-    space: DesignSpace, system: System, goal: Goal, points: np.ndarray, resolution: Resolution
-) -> float:
-    """Seconds a design of the solver of one motor, batched by `vmap`."""
-    judged = eqx.filter_jit(
-        jax.vmap(lambda at: evaluate(space.apply(system, at), goal, resolution))
-    )
-    return fastest(lambda: judged(points)) / len(points)
+def speeds(given: Given, points: np.ndarray) -> dict[str, float]:
+    """Seconds a design by the clock; the rival first."""
+    space, system, goal = given
+    motor, fluid, point = system.motor, system.fluid, system.operating_points[0]
+    rival = partial(independent_results, motor, fluid, point, goal.harmonics, 1e-9)
+    rows = {"SciPy LSODA, tolerance 1e-9": wall_times(rival, 1)[0]}
+    for name, resolution in RESOLUTIONS.items():
+
+        def judged(at, resolution=resolution):
+            return evaluate(space.apply(system, at), goal, resolution)
+
+        alone = partial(eqx.filter_jit(jax.vmap(judged)), points[:SOME])
+        rows[f"one by one under vmap, {name}"] = wall_times(alone, 3)[0] / len(points[:SOME])
+    for rung, of_rung in (("", system), (", with air", with_air(system))):
+        for name, look in LOOKS.items():
+            fewer = points[: max(len(points) // 8, JAX_CHUNK)]
+            judge = partial(evaluate_many, space, of_rung, goal)
+            with compiled_by_jax():
+                taken = wall_times(partial(judge, fewer, look, chunk=JAX_CHUNK), 3)[0]
+            rows[f"lanes by JAX's compiler, {name}{rung}"] = taken / len(fewer)
+            rows[f"lanes, {name}{rung}"] = wall_times(partial(judge, points, look), 3)[0] / len(
+                points
+            )
+    return rows
 
 
-def slopes(
-    space: DesignSpace, system: System, goal: Goal, points: np.ndarray, look: LanesLook
-) -> float:
-    """Seconds a design for all slopes, from cycles at hand."""
-    found = eqx.filter_jit(solve_designs)(designs_in_lanes(space, system, points), look)
-    run = eqx.filter_jit(slopes_of_designs)
-    return fastest(lambda: run(space, system, points, found, goal, look)) / len(points)
+def slope_costs(given: Given) -> dict[str, tuple[float, float]]:
+    """Processor seconds a design of an evaluation, and of all slopes from cycles at hand."""
+    file = of_twenty_variables()
+    wider = file.design_space, at_one_point(file.system), file.goal
+
+    def costs(given: Given) -> tuple[float, float]:
+        points, look = points_of(given, SOME), LOOKS["search"]
+        cycles, _ = judge_and_keep(*given, points, look)
+        once = partial(evaluate_many, *given, points, look, threads=1, chunk=SOME)
+        slopes = partial(slopes_in_lanes, *given, points, cycles, look)
+        return processor_times(once, 5)[0] / SOME, processor_times(slopes, 5)[0] / SOME
+
+    with compiled_by_jax():
+        rows = {f"{given[0].dimension} variables, by JAX's compiler": costs(given)}
+    return rows | {f"{each[0].dimension} variables": costs(each) for each in (given, wider)}
 
 
-def repeated(system: System, lanes: int = 64) -> System:
-    return jax.tree.map(
-        lambda leaf: jnp.broadcast_to(leaf[..., None], (*leaf.shape, lanes)), system
-    )
+def ring_costs(system: System, lanes: int = 64) -> dict[str, float]:
+    """Processor seconds a design, for one lobe and for a ring of six that may differ."""
+    measure, rows = LaneProgram(measure_designs), {}
+    for name, each in (("lobe", system), ("free ring of 6 lobes", free_ring(system))):
+        designs = jax.tree.map(
+            lambda leaf: np.broadcast_to(np.asarray(leaf)[..., None], (*leaf.shape, lanes)), each
+        )
+        run = partial(measure, designs, 600, LOOKS["search"])
+        rows[name] = processor_times(run, 5)[0] / lanes
+    return rows
 
 
-def solved(designs: System, lanes: int = 64) -> float:
-    """Seconds a design for cycles and results."""
-    look = LanesLook.search()
-    solve, total = eqx.filter_jit(solve_designs), eqx.filter_jit(summarise_lanes)
-    return fastest(lambda: total(solve(designs, look)[0], 600, look.oversampling), 5) / lanes
-
-
-def slope_errors(
-    space: DesignSpace, system: System, goal: Goal, points: np.ndarray
-) -> dict[str, list[float]]:
-    """Each design's largest difference of the objective's slopes from those by itself."""
-    alone = [
-        slopes_alone(space, system, at, solve(space.apply(system, at), goal), goal).objective
-        for at in points
-    ]
-    errors = {}
-    for name, look in LOOKS.items():
-        found = eqx.filter_jit(solve_designs)(designs_in_lanes(space, system, points), look)
-        run = eqx.filter_jit(slopes_of_designs)
-        lanes = run(space, system, jnp.asarray(points), found, goal, look).objective
-        errors[name] = [
-            float(np.max(np.abs(lanes[:, place] - one)) / np.max(np.abs(one)))
-            for place, one in enumerate(alone)
-        ]
-    return errors
-
-
-def accuracy(
-    space: DesignSpace, system: System, goal: Goal, points: np.ndarray
-) -> dict[str, list[str]]:
+def accuracy(given: Given, points: np.ndarray) -> dict[str, list[str]]:
     """Errors of some results against a fine look at each design by itself."""
+    space, system, goal = given
     fine = Resolution(elements=640)
 
     @eqx.filter_jit
@@ -213,18 +220,35 @@ def accuracy(
     truth = exact(points)
     found = {}
     for name, look in LOOKS.items():
-        metrics = evaluate_many(space, system, goal, points, look).metrics[0]
+        metrics = evaluate_many(*given, points, look).metrics[0]
         errors = {
             each: np.abs(getattr(metrics, each) / np.asarray(getattr(truth, each)) - 1)
             for each in (*OF_OBJECTIVE, "mean_torque", *EXTREMES)
         }
-        groups = (OF_OBJECTIVE, ("mean_torque",), EXTREMES)
         found[name] = [
             f"{max(np.median(errors[each]) for each in group):.1e}, "
             f"{max(np.max(errors[each]) for each in group):.1e}"
-            for group in groups
+            for group in (OF_OBJECTIVE, ("mean_torque",), EXTREMES)
         ]
     return found
+
+
+def slope_errors(given: Given, points: np.ndarray) -> dict[str, list[float]]:
+    """Each design's largest difference of the objective's slopes from those by itself."""
+    space, system, goal = given
+    alone = [
+        slopes_alone(space, system, at, solve(space.apply(system, at), goal), goal).objective
+        for at in jnp.asarray(points)
+    ]
+    errors = {}
+    for name, look in LOOKS.items():
+        cycles, _ = judge_and_keep(*given, points, look)
+        lanes = slopes_in_lanes(*given, points, cycles, look).objective
+        errors[name] = [
+            float(np.max(np.abs(lanes[:, place] - one)) / np.max(np.abs(one)))
+            for place, one in enumerate(alone)
+        ]
+    return errors
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from camring.numerics.mesh import (
 from camring.numerics.newton import damped_newton
 from camring.numerics.periodic import _interpolate as interpolate
 from camring.numerics.periodic import _layer_width as layer_width
-from camring.numerics.periodic import extent, newton_step, settle
+from camring.numerics.periodic import extent, newton_step, settle, share_of_range
 from camring.numerics.radau import STAGES, element_powers
 from camring.physics.cycle import _equation as equation_of
 from camring.physics.cycle import _judged as judged
@@ -37,7 +37,7 @@ def stage_times(system: System) -> dict[str, float]:
     motor, fluid, point = system.motor, system.fluid, system.operating_points[0]
     resolution = Resolution()
     elements = resolution.elements * (motor.lobes // motor.cam.repeats) + motor.promised_elements()
-    count = ElementCount(elements, elements)
+    promised = ElementCount(elements, elements)
     period, at = motor.cam.period, jnp.asarray(STAGES)
     jit = eqx.filter_jit
     known = reference_radius(motor)
@@ -53,7 +53,7 @@ def stage_times(system: System) -> dict[str, float]:
         def improved(now):
             return newton_step(equation, here, mesh, now)[1]
 
-        return damped_newton(improved, extent, stages, tolerance, 40)
+        return damped_newton(improved, share_of_range, stages, tolerance, 40)
 
     @jit
     def lay(equation, here, mesh, stages, fixed):
@@ -62,7 +62,7 @@ def stage_times(system: System) -> dict[str, float]:
         powers = element_powers(node_state, stages)
         density = fourth_derivative_density(mesh, powers[3], extent(stages), period)
         layer = layer_width(equation, mesh, node_state, period, fixed)
-        finer = equidistribute(mesh, density, fixed, layer, period, count)
+        finer = equidistribute(mesh, density, fixed, layer, period, promised)
         return finer, interpolate(mesh, powers, finer.at(at))
 
     @jit

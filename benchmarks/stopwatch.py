@@ -1,4 +1,4 @@
-"""Wall times of something done again and again, after one time that compiles."""
+"""Times of something done again and again, after one time that compiles."""
 
 import time
 from collections.abc import Callable
@@ -8,10 +8,19 @@ import jax
 
 def wall_times(action: Callable[[], object], repeats: int) -> list[float]:
     """Seconds, shortest first; what JAX does behind our back is waited for."""
+    return _times(action, repeats, time.perf_counter)
+
+
+def processor_times(action: Callable[[], object], repeats: int) -> list[float]:
+    """The same of all threads together, whoever else is at work on the machine."""
+    return _times(action, repeats, time.process_time)
+
+
+def _times(action: Callable[[], object], repeats: int, clock: Callable[[], float]) -> list[float]:
     jax.block_until_ready(action())
     times = []
     for _ in range(repeats):
-        started = time.perf_counter()
+        started = clock()
         jax.block_until_ready(action())
-        times.append(time.perf_counter() - started)
+        times.append(clock() - started)
     return sorted(times)

@@ -19,6 +19,7 @@ import statistics
 import sys
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -33,6 +34,7 @@ from work_precision_picture import draw
 
 import camring
 from camring.interfaces.compilation_cache import keep_compiled_programs
+from camring.interfaces.lane_program import LaneProgram
 from camring.metrics.independent.machine import machine_of
 from camring.metrics.independent.orbit import Orbit, periodic_orbit
 from camring.numerics.radau import element_powers, horner
@@ -47,7 +49,7 @@ PICTURE = ROOT / "docs" / "pictures" / "work_precision.svg"
 
 ANGLES = 2000
 ELEMENTS = (40, 80, 160, 320, 640, 1280, 2560)
-LANE_ELEMENTS = (32, 64, 120, 240, 480)
+LANE_ELEMENTS = (40, 80, 120, 240, 480)
 LANES = 256
 WANTED = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 OURS = "camring, one motor"
@@ -160,7 +162,7 @@ def our_runs(system: System, angles: np.ndarray) -> Iterator[Run]:
 
 
 def lane_runs(system: System, many: np.ndarray, angles: np.ndarray) -> Iterator[Run]:
-    """Chunks as `evaluate_many` solves them; the first lane is the motor itself."""
+    """One call of one thread, as `evaluate_many` makes many; the first lane is the motor itself."""
     point = system.operating_points[0]
     wide = jax.tree.map(
         lambda leaf: jnp.broadcast_to(leaf[..., None], (*leaf.shape, len(many))),
@@ -170,12 +172,9 @@ def lane_runs(system: System, many: np.ndarray, angles: np.ndarray) -> Iterator[
         lambda each: each[0].cam.control_radii, wide, jnp.asarray(many.T)
     )
     for elements in LANE_ELEMENTS:
-        look = LanesLook(elements=elements) if elements > 64 else LanesLook.search()
-        look = LanesLook(**{**vars(look), "elements": elements})
-        # One thread, as there: a pool inside a program would stand in the way of ours.
-        options = {"xla_cpu_prefer_vector_width": 512, "xla_cpu_multi_thread_eigen": False}
-        program = eqx.filter_jit(simulate_lanes, compiler_options=options)
-        run = partial(program, motor, fluid, point, look)
+        like = LanesLook() if elements > LanesLook.search().elements else LanesLook.search()
+        look = replace(like, elements=elements)
+        run = partial(LaneProgram(simulate_lanes), motor, fluid, point, look)
 
         def pressure(run=run) -> np.ndarray:
             orbit = run().cycle.orbit
@@ -186,7 +185,8 @@ def lane_runs(system: System, many: np.ndarray, angles: np.ndarray) -> Iterator[
             fraction = (within - start[element]) / width[element]
             return np.asarray(system.fluid.pressure(horner(powers[:, element], fraction)))
 
-        yield Run(BATCH, str(elements), partial(_ready, run), pressure, designs=len(many))
+        ready = partial(_ready, run)
+        yield Run(BATCH, str(elements), ready, pressure, designs=len(many))
 
 
 def _ready(run: Callable[[], object]) -> object:
