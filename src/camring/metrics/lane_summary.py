@@ -127,7 +127,7 @@ def _at_fixed_places(cycle: Cycle, highest_order: int, oversampling: int) -> Wav
     motor, orbit, period = cycle.motor, cycle.orbit, cycle.motor.cam.period
     phases = motor.distinct_phases
     wanted = max(oversampling * (highest_order // motor.cam.repeats), 256)
-    parts = 4 * phases  # a quarter of what any sum of pistons repeats
+    parts = 4 * phases  # so that sums of pistons, too, have parts to be split into
     count = parts * -(-wanted // parts)
     lanes = orbit.node_state.shape[-1]
     angle = jnp.broadcast_to(jnp.arange(count)[:, None] * (period / count), (count, lanes))

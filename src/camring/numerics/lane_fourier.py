@@ -1,12 +1,11 @@
 """Fourier sums of equidistant samples, many waves side by side (`numerics/lanes.py`).
 
-Cosines see what is even about the middle of the period, sines what is odd; and of both,
-orders that are even see what is even about the quarter, odd orders what is odd. Samples are
-added and subtracted so beforehand, and a quarter of the products is left.
+Two stages of a fast transform (Cooley and Tukey 1965), as products with known matrices:
+samples a whole number of parts apart first, then what lies within a part. Of the real
+wave's orders, `k` and `-k` come from the same sums.
 """
 
-from functools import partial
-from math import pi
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 import jax
@@ -17,86 +16,128 @@ from jaxtyping import Array, Float
 Wave = Float[Array, "place lane"]
 
 
-class Quarters(NamedTuple):
-    """What each kind of order sees, or has: cosines of even and odd orders, then sines."""
+class Tables(NamedTuple):
+    """What is known beforehand for `part * parts` samples."""
 
-    even_cosine: Float[Array, "row lane"]
-    odd_cosine: Float[Array, "row lane"]
-    even_sine: Float[Array, "row lane"]
-    odd_sine: Float[Array, "row lane"]
+    across: Float[np.ndarray, "both part"]
+    """Cosines, then minus sines, of each remainder of an order by the number of parts."""
+    cosine: Float[np.ndarray, "place remainder 1"]
+    sine: Float[np.ndarray, "place remainder 1"]
+    within: Float[np.ndarray, "both place"]
+    """Cosines, then sines, of each quotient."""
+    ahead: Float[np.ndarray, "quotient remainder 1"]
+    """One where quotient times parts plus remainder is an order that counts; else nil."""
+    behind: Float[np.ndarray, "quotient remainder 1"]
+    """The same with the remainder taken off."""
+
+
+class Sums(NamedTuple):
+    """Of real and imaginary parts times cosines and sines, shape (quotient, remainder, lane)."""
+
+    real_cosine: Array
+    real_sine: Array
+    imaginary_cosine: Array
+    imaginary_sine: Array
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(1,))
 def power_of_orders(wave: Wave, orders: int) -> Float[Array, " lane"]:
     """Sum of squared Fourier coefficients of orders 1 to `orders` of a period's samples.
 
-    Their number is a multiple of four, and more than twice the orders.
+    There must be more than twice as many samples as orders.
     """
-    return _power(_coefficients(wave, orders))
+    tables = _tables(wave.shape[0], orders)
+    ahead, behind = _coefficients(_sums(wave, tables), tables)
+    return jnp.sum(sum(each**2 for each in (*ahead, *behind)), axis=(0, 1))
 
 
 @power_of_orders.defjvp
 def _power_slope(orders: int, primals: tuple, tangents: tuple) -> tuple[Array, Array]:
-    # Coefficients are wanted once, however many directions there are.
-    wave = primals[0]
-    found = _coefficients(wave, orders)
+    # The gradient once, by the transposes of all stages, however many directions there are.
+    (wave,) = primals
     tables = _tables(wave.shape[0], orders)
-    back = [jnp.asarray(2 * t.T) @ each for t, each in zip(tables, found, strict=True)]
-    return _power(found), jnp.sum(_unfolded(Quarters(*back)) * tangents[0], axis=0)
-
-
-def _power(coefficients: Quarters) -> Float[Array, " lane"]:
-    parts = [jnp.sum(each**2, axis=0) for each in coefficients]
-    return sum(parts[1:], parts[0])
-
-
-def _coefficients(wave: Wave, orders: int) -> Quarters:
-    tables = _tables(wave.shape[0], orders)
-    return Quarters(*(jnp.asarray(t) @ w for t, w in zip(tables, _folded(wave), strict=True)))
-
-
-def _folded(wave: Wave) -> Quarters:
-    half = wave.shape[0] // 2
-    quarter = half // 2
-    ahead, behind = wave[1:half], wave[half + 1 :][::-1]
-    even = jnp.concatenate([wave[:1], ahead + behind, wave[half : half + 1]])
-    odd = ahead - behind
-    near, far = even[:quarter], even[quarter + 1 :][::-1]
-    left, right = odd[: quarter - 1], odd[quarter:][::-1]
-    return Quarters(
-        jnp.concatenate([near + far, even[quarter : quarter + 1]]),
-        near - far,
-        left - right,
-        jnp.concatenate([left + right, odd[quarter - 1 : quarter]]),
+    (real, imaginary), (real_behind, imaginary_behind) = ahead, behind = _coefficients(
+        _sums(wave, tables), tables
     )
-
-
-def _unfolded(parts: Quarters) -> Wave:
-    """The transpose of `_folded`."""
-    quarter = parts.odd_cosine.shape[0]
-    near = parts.even_cosine[:quarter]
-    even = jnp.concatenate(
-        [near + parts.odd_cosine, parts.even_cosine[quarter:], (near - parts.odd_cosine)[::-1]]
+    power = jnp.sum(sum(each**2 for each in (*ahead, *behind)), axis=(0, 1))
+    sums = Sums(
+        real + real_behind,
+        imaginary_behind - imaginary,
+        imaginary + imaginary_behind,
+        real - real_behind,
     )
-    left = parts.odd_sine[: quarter - 1]
-    odd = jnp.concatenate(
-        [left + parts.even_sine, parts.odd_sine[quarter - 1 :], (left - parts.even_sine)[::-1]]
+    return power, jnp.sum(2 * _wave(sums, tables) * tangents[0], axis=0)
+
+
+def _sums(wave: Wave, tables: Tables) -> Sums:
+    parts = tables.across.shape[1]
+    both = _product(tables.across, wave.reshape(parts, -1, wave.shape[-1]))
+    half = both.shape[0] // 2
+    real, imaginary = (jnp.swapaxes(each, 0, 1) for each in (both[:half], both[half:]))
+    turned = (
+        real * tables.cosine + imaginary * tables.sine,
+        imaginary * tables.cosine - real * tables.sine,
     )
-    inner = even[1:-1]
-    return jnp.concatenate([even[:1], inner + odd, even[-1:], (inner - odd)[::-1]])
+    found = [_product(tables.within, each) for each in turned]
+    count = tables.ahead.shape[0]
+    return Sums(found[0][:count], found[0][count:], found[1][:count], found[1][count:])
 
 
-def _tables(count: int, orders: int) -> tuple[np.ndarray, ...]:
-    """Shape (order, place) for each of the `Quarters`."""
-    quarter = count // 4
-    even, odd = np.arange(2, orders + 1, 2), np.arange(1, orders + 1, 2)
+def _wave(sums: Sums, tables: Tables) -> Wave:
+    """The transpose of `_sums`."""
+    back = tables.within.T
+    real = _product(back, jnp.concatenate([sums.real_cosine, sums.real_sine]))
+    imaginary = _product(back, jnp.concatenate([sums.imaginary_cosine, sums.imaginary_sine]))
+    turned = (
+        real * tables.cosine - imaginary * tables.sine,
+        real * tables.sine + imaginary * tables.cosine,
+    )
+    both = jnp.concatenate([jnp.swapaxes(each, 0, 1) for each in turned])
+    found = _product(tables.across.T, both)
+    return found.reshape(-1, found.shape[-1])
 
-    def at(function: np.ufunc, order: np.ndarray, first: int, last: int) -> np.ndarray:
-        return function(2 * pi / count * np.outer(order, np.arange(first, last + 1))) / count
 
+def _product(matrix: np.ndarray, rows: Array) -> Array:
+    return jnp.tensordot(jnp.asarray(matrix), rows, axes=1)
+
+
+def _coefficients(sums: Sums, tables: Tables) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Real and imaginary parts of the orders that count, remainders added and taken off."""
+    ahead = (sums.real_cosine + sums.imaginary_sine, sums.imaginary_cosine - sums.real_sine)
+    behind = (sums.real_cosine - sums.imaginary_sine, sums.imaginary_cosine + sums.real_sine)
     return (
-        at(np.cos, even, 0, quarter),
-        at(np.cos, odd, 0, quarter - 1),
-        at(np.sin, even, 1, quarter - 1),
-        at(np.sin, odd, 1, quarter),
+        (ahead[0] * tables.ahead, ahead[1] * tables.ahead),
+        (behind[0] * tables.behind, behind[1] * tables.behind),
     )
+
+
+@lru_cache(maxsize=32)
+def _tables(count: int, orders: int) -> Tables:
+    parts = _parts(count, orders)
+    remainder = np.arange(parts // 2 + 1)
+    quotient = np.arange((orders + parts // 2) // parts + 1)
+    place = np.arange(count // parts)
+    across = 2 * np.pi / parts * np.outer(remainder, np.arange(parts))
+    turn = 2 * np.pi / count * np.outer(place, remainder)[..., None]
+    within = 2 * np.pi * parts / count * np.outer(quotient, place)
+    ahead = parts * quotient[:, None] + remainder
+    behind = parts * quotient[:, None] - remainder
+    twice = (remainder == 0) | (2 * remainder == parts)  # the same orders as ahead
+    return Tables(
+        np.concatenate([np.cos(across), -np.sin(across)]) / count,
+        np.cos(turn),
+        np.sin(turn),
+        np.concatenate([np.cos(within), np.sin(within)]),
+        _counts(ahead, orders),
+        _counts(np.where(twice, 0, behind), orders),
+    )
+
+
+def _counts(order: np.ndarray, orders: int) -> Float[np.ndarray, "quotient remainder 1"]:
+    return ((order >= 1) & (order <= orders))[..., None].astype(float)
+
+
+def _parts(count: int, orders: int) -> int:
+    """How many parts take the fewest products in both stages."""
+    divisors = [parts for parts in range(1, count + 1) if count % parts == 0]
+    return min(divisors, key=lambda parts: count * (parts + 2 + 2 * orders / parts))
