@@ -132,7 +132,6 @@ NAMES = lambda each: each if isinstance(each, str) else each.elements  # noqa: E
     [
         ("ring, mean", SEARCH),
         ("second rung, lowest", SEARCH),
-        ("degree 5, given, backwards", FINAL),
     ],
     ids=NAMES,
 )
@@ -149,7 +148,6 @@ def test_every_result_of_every_motor_is_that_of_jax(kind, look, through_jax):
 @pytest.mark.parametrize(
     ("kind", "look"),
     [
-        ("ring, mean", FINAL),
         ("second rung, lowest", FINAL),
         ("degree 5, given, backwards", SEARCH),
     ],
@@ -257,7 +255,6 @@ class Example:
 
 SLOPES = [
     Example("mill", FINAL, results=("efficiency", "max_pressure")),
-    Example("wheel", FINAL, first=4),
 ]
 
 

@@ -133,7 +133,7 @@ def run(steps, wanted, arrays):
     return [found[-1 - number % len(found)] for number in wanted]
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(
     steps=st.lists(st.one_of(STEP, STEP, STEP, STEP, LOOP), min_size=5, max_size=40),
     wanted=st.lists(st.integers(0, 20), min_size=1, max_size=4),
