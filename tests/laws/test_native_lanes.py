@@ -124,7 +124,8 @@ STEPS_APART = {"within": 3e-3, "torque": 1e-6}
 """What the last of Newton's steps may change of a search's results: most the flow's ripple."""
 
 
-NAMES = lambda each: each if isinstance(each, str) else each.elements  # noqa: E731
+def name_of(each):
+    return each if isinstance(each, str) else each.elements
 
 
 @pytest.mark.parametrize(
@@ -133,7 +134,7 @@ NAMES = lambda each: each if isinstance(each, str) else each.elements  # noqa: E
         ("ring, mean", SEARCH),
         ("second rung, lowest", SEARCH),
     ],
-    ids=NAMES,
+    ids=name_of,
 )
 def test_every_result_of_every_motor_is_that_of_jax(kind, look, through_jax):
     system = in_lanes(cases_of(kind))
@@ -151,7 +152,7 @@ def test_every_result_of_every_motor_is_that_of_jax(kind, look, through_jax):
         ("second rung, lowest", FINAL),
         ("degree 5, given, backwards", SEARCH),
     ],
-    ids=NAMES,
+    ids=name_of,
 )
 def test_there_is_code_for_every_kind_and_look(kind, look):
     """The others' numbers are looked at above."""

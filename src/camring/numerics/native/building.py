@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from camring.numerics.native.graph import (
+    DEAR,
     Constant,
     Input,
     Lead,
@@ -20,9 +21,6 @@ from camring.numerics.native.graph import (
 
 TRACED_LANES = 97
 """A number of lanes that no other axis has, so that lanes are known by it."""
-
-DEAR = ("div", "sqrt")
-"""Done once for all rounds of a repetition, whatever room that takes."""
 
 
 class Wanted(NamedTuple):
@@ -80,7 +78,7 @@ class Builder:
         """One instruction on every row; the one there is already if it was asked for before."""
         if self.around is not None and all(map(self.from_around, inputs)):
             arrays = {id(e.node) for e in inputs if isinstance(e, View) and differs_by_row(e)}
-            # What takes no more room than what it is made from need not be made each round.
+            # Once for all rounds: what is dear, and what takes no more room than it is made from.
             if len(arrays) <= 1 or name in DEAR or math.prod(lead) == 1:
                 return self.around.pointwise(name, inputs, lead, dtype, **params)
         inputs = [spread(each, lead) for each in inputs]

@@ -6,9 +6,9 @@ area is known before the loop: where it is zero, roots and divisions of its flow
 
 from dataclasses import dataclass, field
 
-from camring.numerics.native.graph import Constant, Node, Operand, Pointwise, View
+from camring.numerics.native.building import differs_by_row
+from camring.numerics.native.graph import DEAR, Node, Pointwise, View
 
-DEAR = frozenset({"sqrt", "div"})
 WORTH = 2
 """Dear instructions that a branch must be able to leave out."""
 
@@ -33,11 +33,11 @@ def gates(members: list[Node], stored: set[int]) -> list[Gate]:
                 readers[id(each.node)].append(node)
     by_factor: dict[tuple, Gate] = {}
     for node in members:
-        factor = _factor(node, inside)
-        if factor is not None:
+        if not isinstance(node, Pointwise) or node.name != "mul" or node.dtype.kind != "f":
+            continue
+        for factor in _factors(node, inside):
             key = id(factor.node), factor.rows.tobytes()
-            gate = by_factor.setdefault(key, Gate(factor, []))
-            gate.products.append(node)  # type: ignore[arg-type]
+            by_factor.setdefault(key, Gate(factor, [])).products.append(node)
     found: list[Gate] = []
     taken: set[int] = set()
     for gate in by_factor.values():
@@ -50,19 +50,15 @@ def gates(members: list[Node], stored: set[int]) -> list[Gate]:
     return found
 
 
-def _factor(node: Node, inside: dict[int, int]) -> View | None:
-    """The factor of a product that was known before the loop and differs from row to row."""
-    if not isinstance(node, Pointwise) or node.name != "mul" or node.dtype.kind != "f":
-        return None
-    known = [each for each in node.inputs if _known_rows(each, inside)]
-    others = [each for each in node.inputs if isinstance(each, View) and id(each.node) in inside]
-    return known[0] if len(known) == 1 and len(others) == 1 else None  # type: ignore[return-value]
+def _factors(product: Pointwise, inside: dict[int, int]) -> list[View]:
+    """The factor of a product that was known before the loop and differs from row to row.
 
-
-def _known_rows(operand: Operand, inside: dict[int, int]) -> bool:
-    if isinstance(operand, Constant) or id(operand.node) in inside:
-        return False
-    return bool((operand.rows != operand.rows.flat[0]).any())
+    None where there are two of them, or where the other one was known, too.
+    """
+    views = [each for each in product.inputs if isinstance(each, View)]
+    computed = [each for each in views if id(each.node) in inside]
+    known = [each for each in views if id(each.node) not in inside and differs_by_row(each)]
+    return known if len(known) == len(computed) == 1 else []
 
 
 def _only_for(

@@ -13,6 +13,9 @@ from typing import Any
 
 import numpy as np
 
+DEAR = frozenset({"div", "sqrt"})
+"""Instructions that a processor takes long for."""
+
 Lead = tuple[int, ...]
 """The shape before the lanes."""
 
