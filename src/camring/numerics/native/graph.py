@@ -121,17 +121,23 @@ class Taken(Node):
 
 
 @dataclass(eq=False)
-class Part(Node):
-    """A part of a `Joined`, from row `first` on."""
+class OfOne(Node):
+    """Computed from one operand."""
 
     _: KW_ONLY
     given: Operand
-    whole_of: "Joined"
-    first: int
 
     @property
     def operands(self) -> list[Operand]:
         return [self.given]
+
+
+@dataclass(eq=False, kw_only=True)
+class Part(OfOne):
+    """A part of a `Joined`, from row `first` on."""
+
+    whole_of: "Joined"
+    first: int
 
 
 @dataclass(eq=False)
@@ -145,55 +151,31 @@ class Joined(Node):
         return [part.whole() for part in self.parts]
 
 
-@dataclass(eq=False)
-class Folded(Node):
+@dataclass(eq=False, kw_only=True)
+class Folded(OfOne):
     """All rows of an operand added, or the largest or smallest; one row."""
 
-    _: KW_ONLY
     how: str
-    given: Operand
-
-    @property
-    def operands(self) -> list[Operand]:
-        return [self.given]
 
 
-@dataclass(eq=False)
-class AcrossLanes(Node):
+@dataclass(eq=False, kw_only=True)
+class AcrossLanes(OfOne):
     """The largest, smallest or the sum of a row's lanes: one number for all."""
 
-    _: KW_ONLY
     how: str
-    given: Operand
-
-    @property
-    def operands(self) -> list[Operand]:
-        return [self.given]
 
 
-@dataclass(eq=False)
-class Counted(Node):
+@dataclass(eq=False, kw_only=True)
+class Counted(OfOne):
     """How often each row's number is among some numbers, in each lane."""
 
-    _: KW_ONLY
-    number: Operand
 
-    @property
-    def operands(self) -> list[Operand]:
-        return [self.number]
-
-
-@dataclass(eq=False)
-class Product(Node):
+@dataclass(eq=False, kw_only=True)
+class Product(OfOne):
     """A constant matrix times rows; shape (row, term) times (term, *rest)."""
 
-    _: KW_ONLY
     matrix: np.ndarray
     given: View
-
-    @property
-    def operands(self) -> list[Operand]:
-        return [self.given]
 
 
 @dataclass(eq=False)

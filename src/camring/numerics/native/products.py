@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from camring.numerics.native.graph import Counted, Product, View
+from camring.numerics.native.graph import Counted, Product
 from camring.numerics.native.memory import Buffer
 from camring.numerics.native.numbers import WIDTH, element, literal, row
 from camring.numerics.native.rows import LoopOver, Rows, Variable, flat_rows
@@ -15,7 +15,6 @@ NUMBER = np.dtype(float)
 
 def write_product(rows: Rows, node: Product, target: Buffer) -> None:
     """Row by row of the matrix, `TILE` at a time; the last ones may be there twice."""
-    assert isinstance(node.given, View)
     code, (count, terms) = rows.code, node.matrix.shape
     rest = node.rows // count
     given = rows.shifted(rows.located(node.given.node), int(node.given.rows.flat[0]))
@@ -59,7 +58,7 @@ def write_count(rows: Rows, node: Counted, counts: Buffer) -> None:
     with LoopOver(code, node.rows) as here:
         assert here.index is not None
         rows.store(literal(0, node.dtype, True), node.dtype, counts, here.index)
-    numbers = flat_rows(node.number)
+    numbers = flat_rows(node.given)
     short = element(numbers.dtype)
     with LoopOver(code, numbers.lead[0]) as here:
         value = rows.read(numbers, here)

@@ -36,6 +36,18 @@ class Loop:
 Step = Node | Loop
 
 
+def nodes_of(step: Step) -> list[Node]:
+    """Those that a step computes."""
+    return step.members if isinstance(step, Loop) else [step]
+
+
+def row_by_row(reader: Node, view: View) -> bool:
+    """Whether a node needs of an operand, at each row, that very row."""
+    whole = isinstance(reader, Taken) and view is reader.table
+    first = isinstance(reader, Scan) and any(view is begin for begin in reader.begin)
+    return view.as_it_is and not whole and not first
+
+
 def schedule(nodes: list[Node]) -> list[Step]:
     """Steps that compute the nodes, given in an order in which they could be."""
     steps: list[Step] = []
@@ -99,11 +111,8 @@ def _joins(node: Node, waiting: set[int], inside: set[int]) -> bool:
     for each in _views(node):
         if id(each.node) not in waiting:
             continue
-        if isinstance(node, Taken) and each is node.table:
-            return False
-        if isinstance(node, Scan) and any(each is one for one in node.begin):
-            return False  # what it begins with is wanted before the loop's first row
-        if id(each.node) not in inside or not leaves_rows(each.node) or not each.as_it_is:
+        there = id(each.node) in inside and leaves_rows(each.node)
+        if not there or not row_by_row(node, each):
             return False
     return True
 
@@ -116,16 +125,15 @@ def _sink(steps: list[Step]) -> None:
     """Moves what only one later loop reads into it, where all it needs is stored anyway."""
     place: dict[int, int] = {}
     for number, step in enumerate(steps):
-        for node in step.members if isinstance(step, Loop) else [step]:
+        for node in nodes_of(step):
             place[id(node)] = number
     readers: dict[int, set[int]] = {}
     direct: dict[int, bool] = {}
     for number, step in enumerate(steps):
-        for node in step.members if isinstance(step, Loop) else [step]:
+        for node in nodes_of(step):
             for each in _views(node):
                 readers.setdefault(id(each.node), set()).add(number)
-                plain = each.as_it_is and not (isinstance(node, Taken) and each is node.table)
-                direct[id(each.node)] = direct.get(id(each.node), True) and plain
+                direct[id(each.node)] = direct.get(id(each.node), True) and row_by_row(node, each)
     for number in range(len(steps) - 1, -1, -1):
         step = steps[number]
         if not isinstance(step, Loop):

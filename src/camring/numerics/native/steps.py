@@ -78,7 +78,7 @@ def counted(build: Builder, given: list[Operand], wanted: Wanted) -> Operand:
     batched = how.operand_batching_dims == (1,) and how.inserted_window_dims == (0,)
     if not batched or not _all_are(before, 0) or not _all_are(added, 1):
         raise NotInLanes("a scatter that is no counting of rows in each lane")
-    return build.add(Counted(wanted.lead, wanted.dtype, number=number))
+    return build.add(Counted(wanted.lead, wanted.dtype, given=number))
 
 
 def _all_are(operand: Operand, value: int) -> bool:

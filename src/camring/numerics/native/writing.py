@@ -29,7 +29,7 @@ from camring.numerics.native.memory import Buffer, Room
 from camring.numerics.native.numbers import WIDTH, element, intrinsic, literal, row
 from camring.numerics.native.products import write_count, write_product
 from camring.numerics.native.rows import Here, LoopOver, Rows, Variable, key_of
-from camring.numerics.native.schedule import Loop, Step, leaves_rows, schedule
+from camring.numerics.native.schedule import Loop, Step, leaves_rows, nodes_of, row_by_row, schedule
 
 ENTRY = "camring_lanes"
 
@@ -123,7 +123,6 @@ class _Writer(Rows):
     def _room_for(self, node: Node, stored: set[int]) -> Rooms:
         """Working memory for what a loop leaves for later."""
         owner = node.whole_of if isinstance(node, Part) else node
-        assert owner is not None
         needed = isinstance(node, Part) or (leaves_rows(node) and id(node) in stored)
         if not needed or key_of(owner) in self.buffers:
             return []
@@ -252,19 +251,17 @@ def _uses(steps: list[Step], region: Region) -> tuple[set[int], dict[int, int]]:
 
     def read(node: Node, number: int) -> None:
         last[id(node)] = max(number, last.get(id(node), -1))
-        if isinstance(node, Result) and node.of is not None:
+        if isinstance(node, Result):
             last[id(node.of)] = max(number, last.get(id(node.of), -1))
 
     for number, step in enumerate(steps):
-        members = step.members if isinstance(step, Loop) else [step]
-        together = {id(node) for node in members} if isinstance(step, Loop) else set()
-        for node in members:
+        together = {id(node) for node in nodes_of(step)} if isinstance(step, Loop) else set()
+        for node in nodes_of(step):
             for each in node.operands:
                 if isinstance(each, Constant):
                     continue
                 read(each.node, number)
-                table = isinstance(node, Taken) and each is node.table
-                if id(each.node) not in together or not each.as_it_is or table:
+                if id(each.node) not in together or not row_by_row(node, each):
                     stored.add(id(each.node))
     for output in region.outputs:
         if isinstance(output, View):
@@ -285,11 +282,10 @@ def _may_replace(steps: list[Step], region: Region, given: Input, output: Operan
     if not loops:
         return False
     for place, step in enumerate(steps):
-        for reader in step.members if isinstance(step, Loop) else [step]:
+        for reader in nodes_of(step):
             for each in reader.operands:
                 if isinstance(each, Constant) or each.node is not given or place < loops[0]:
                     continue
-                table = isinstance(reader, Taken) and each is reader.table
-                if place > loops[0] or table or not each.as_it_is:
+                if place > loops[0] or not row_by_row(reader, each):
                     return False
     return True
