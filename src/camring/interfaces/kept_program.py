@@ -125,7 +125,8 @@ class KeptProgram(Generic[Arguments, Result]):
                 except Indescribable:
                     self._others.add(key)
                     return None
-                self._programs[key] = _loaded(path, arrays) or self._compiled(path, given, arrays)
+                known = from_disk(path, lambda content: _shown_to_run(content, arrays))
+                self._programs[key] = known or self._compiled(path, given, arrays)
             return self._programs[key]
 
     def _compiled(self, path: Path, given: Any, arrays: list[Any]) -> Program:
@@ -205,17 +206,22 @@ def keep(path: Path, content: Any) -> None:
                 each.unlink(missing_ok=True)
 
 
-def _loaded(path: Path, arrays: list[Any]) -> Program | None:
-    """A program from disk that has shown that it runs; None where there is none such."""
+def from_disk(path: Path, restored: Callable[[Any], Program]) -> Program | None:
+    """A program that was kept, by what makes it of its content; None where there is none such."""
     if not path.exists():
         return None
     try:
-        code, inner, outer, result = pickle.loads(zlib.decompress(path.read_bytes()))
-        program = Program(deserialize_and_load(code, inner, outer), result)
-        jax.block_until_ready(program(arrays))
+        program = restored(pickle.loads(zlib.decompress(path.read_bytes())))
         os.utime(path)
     except Exception:  # whatever is wrong with a file, compiling makes a new one
         return None
+    return program
+
+
+def _shown_to_run(content: Any, arrays: list[Any]) -> Program:
+    code, inner, outer, result = content
+    program = Program(deserialize_and_load(code, inner, outer), result)
+    jax.block_until_ready(program(arrays))
     return program
 
 

@@ -7,9 +7,7 @@ the same results. `CAMRING_NATIVE=off` lets everything go that way.
 """
 
 import os
-import pickle
 import threading
-import zlib
 from collections.abc import Callable, Hashable
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar
@@ -22,6 +20,7 @@ from camring.interfaces.kept_program import (
     SUFFIX,
     Program,
     between_arrays,
+    from_disk,
     is_array,
     keep,
     no_tracing,
@@ -83,7 +82,7 @@ class LaneProgram(Generic[Arguments, Result]):
     def _found(self, given: Any) -> Program | None:
         """From disk, or compiled and put there; None where JAX has to do it."""
         path = self._path(given)
-        known = _from_disk(path) if path else None
+        known = from_disk(path, _restored) if path else None
         if known:
             return known
         leaves = jax.tree.leaves(given)
@@ -123,13 +122,6 @@ def _one_lane(leaf: Any) -> Any:
     return leaf[..., :1] if is_array(leaf) and leaf.ndim else leaf
 
 
-def _from_disk(path: Path) -> Program | None:
-    if not path.exists():
-        return None
-    try:
-        code, result = pickle.loads(zlib.decompress(path.read_bytes()))
-        program = Program(NativeProgram.restored(Code(*code)), result)
-        os.utime(path)
-    except Exception:  # whatever is wrong with a file, compiling makes a new one
-        return None
-    return program
+def _restored(content: Any) -> Program:
+    code, result = content
+    return Program(NativeProgram.restored(Code(*code)), result)
