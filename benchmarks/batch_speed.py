@@ -1,11 +1,11 @@
-"""How fast many designs are judged side by side, how right they are, and what it takes.
+"""How fast many designs are evaluated side by side, how right they are, and what it takes.
 
     python benchmarks/batch_speed.py [--designs 20000] [--million]
 
 The designs are random points of the wheel motor's design space at its first operating
-point; every result of model.md section 10, the objective and all constraints are
+point; every result of docs/theory.md section 10, the objective and all constraints are
 computed. Rivals in the same run: SciPy's LSODA at tolerance 1e-9 giving the same results,
-this program's own solver of one motor under `vmap`, and lanes as JAX compiles them,
+this program's own solver of one motor under `vmap`, and batches as JAX compiles them,
 256 at a time. Times are by the clock, all threads at work, unless they are called
 processor time: that is of one call, all its threads added up. Errors are against the
 solver of one motor at 640 elements.
@@ -28,22 +28,22 @@ import numpy as np
 from stopwatch import processor_times, wall_times
 from wheel_motor import as_given, at_one_point, free_ring, of_twenty_variables, with_air
 
-from camring.interfaces.compiled import slopes as slopes_alone
-from camring.interfaces.compiled import solve
-from camring.interfaces.lane_program import SWITCH, LaneProgram
-from camring.interfaces.many import CHUNK, cores, evaluate_many, judge_and_keep, slopes_in_lanes
-from camring.metrics.independent import independent_results
+from camring.evaluation.batch import CHUNK, assess_and_keep, cores, evaluate_many, slopes_in_batch
 from camring.metrics.summary import summarise
+from camring.objective.batch import measure_designs
 from camring.objective.design_space import DesignSpace
-from camring.objective.lanes import measure_designs
 from camring.objective.objective import Goal, evaluate
-from camring.physics.cycle import simulate
-from camring.physics.lane_cycle import LanesLook
+from camring.physics.batch_cycle import BatchResolution
+from camring.physics.heat.simulation import simulate
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
+from camring.programs.batch_program import SWITCH, BatchProgram
+from camring.programs.compiled import slopes as slopes_alone
+from camring.programs.compiled import solve
+from camring.reference import independent_results
 
 RESULTS = Path(__file__).with_name("results") / "batch_speed.json"
-LOOKS = {"search": LanesLook.search(), "final": LanesLook()}
+RESOLUTIONS = {"search": BatchResolution.search(), "final": BatchResolution()}
 RESOLUTIONS = {"search": Resolution.coarse(), "final": Resolution()}
 OF_OBJECTIVE = ("torque_ripple", "pressure_ripple", "efficiency", "jerk_objective")
 EXTREMES = ("max_pressure", "max_contact_stress")
@@ -57,7 +57,7 @@ Given = tuple[DesignSpace, System, Goal]
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--designs", type=int, default=20_000)
-    parser.add_argument("--million", action="store_true", help="judge a million designs as well")
+    parser.add_argument("--million", action="store_true", help="evaluate a million designs as well")
     parser.add_argument("--json", type=Path, default=RESULTS, help="where the figures go, too")
     asked = parser.parse_args()
 
@@ -128,7 +128,7 @@ def points_of(given: Given, count: int, seed: int = 0) -> np.ndarray:
 
 @contextmanager
 def compiled_by_jax() -> Iterator[None]:
-    """Within it, lanes go through JAX's compiler."""
+    """Within it, batches go through JAX's compiler."""
     before = os.environ.get(SWITCH)
     os.environ[SWITCH] = "off"
     try:
@@ -156,21 +156,20 @@ def speeds(given: Given, points: np.ndarray) -> dict[str, float]:
     rows = {"SciPy LSODA, tolerance 1e-9": wall_times(rival, 1)[0]}
     for name, resolution in RESOLUTIONS.items():
 
-        def judged(at, resolution=resolution):
+        def assessed(at, resolution=resolution):
             return evaluate(space.apply(system, at), goal, resolution)
 
-        alone = partial(eqx.filter_jit(jax.vmap(judged)), points[:SOME])
+        alone = partial(eqx.filter_jit(jax.vmap(assessed)), points[:SOME])
         rows[f"one by one under vmap, {name}"] = wall_times(alone, 3)[0] / len(points[:SOME])
-    for rung, of_rung in (("", system), (", with air", with_air(system))):
-        for name, look in LOOKS.items():
+    for oil, of_oil in (("", system), (", with air", with_air(system))):
+        for name, resolution in RESOLUTIONS.items():
             fewer = points[: max(len(points) // 8, JAX_CHUNK)]
-            judge = partial(evaluate_many, space, of_rung, goal)
+            run_batch = partial(evaluate_many, space, of_oil, goal)
             with compiled_by_jax():
-                taken = wall_times(partial(judge, fewer, look, chunk=JAX_CHUNK), 3)[0]
-            rows[f"lanes by JAX's compiler, {name}{rung}"] = taken / len(fewer)
-            rows[f"lanes, {name}{rung}"] = wall_times(partial(judge, points, look), 3)[0] / len(
-                points
-            )
+                taken = wall_times(partial(run_batch, fewer, resolution, chunk=JAX_CHUNK), 3)[0]
+            rows[f"batch by JAX's compiler, {name}{oil}"] = taken / len(fewer)
+            taken = wall_times(partial(run_batch, points, resolution), 3)[0]
+            rows[f"batch, {name}{oil}"] = taken / len(points)
     return rows
 
 
@@ -180,10 +179,10 @@ def slope_costs(given: Given) -> dict[str, tuple[float, float]]:
     wider = file.design_space, at_one_point(file.system), file.goal
 
     def costs(given: Given) -> tuple[float, float]:
-        points, look = points_of(given, SOME), LOOKS["search"]
-        cycles, _ = judge_and_keep(*given, points, look)
-        once = partial(evaluate_many, *given, points, look, threads=1, chunk=SOME)
-        slopes = partial(slopes_in_lanes, *given, points, cycles, look)
+        points, resolution = points_of(given, SOME), RESOLUTIONS["search"]
+        cycles, _ = assess_and_keep(*given, points, resolution)
+        once = partial(evaluate_many, *given, points, resolution, threads=1, chunk=SOME)
+        slopes = partial(slopes_in_batch, *given, points, cycles, resolution)
         return processor_times(once, 5)[0] / SOME, processor_times(slopes, 5)[0] / SOME
 
     with compiled_by_jax():
@@ -191,20 +190,20 @@ def slope_costs(given: Given) -> dict[str, tuple[float, float]]:
     return rows | {f"{each[0].dimension} variables": costs(each) for each in (given, wider)}
 
 
-def ring_costs(system: System, lanes: int = 64) -> dict[str, float]:
+def ring_costs(system: System, count: int = 64) -> dict[str, float]:
     """Processor seconds a design, for one lobe and for a ring of six that may differ."""
-    measure, rows = LaneProgram(measure_designs), {}
+    measure, rows = BatchProgram(measure_designs), {}
     for name, each in (("lobe", system), ("free ring of 6 lobes", free_ring(system))):
         designs = jax.tree.map(
-            lambda leaf: np.broadcast_to(np.asarray(leaf)[..., None], (*leaf.shape, lanes)), each
+            lambda leaf: np.broadcast_to(np.asarray(leaf)[..., None], (*leaf.shape, count)), each
         )
-        run = partial(measure, designs, 600, LOOKS["search"])
-        rows[name] = processor_times(run, 5)[0] / lanes
+        run = partial(measure, designs, 600, RESOLUTIONS["search"])
+        rows[name] = processor_times(run, 5)[0] / count
     return rows
 
 
 def accuracy(given: Given, points: np.ndarray) -> dict[str, list[str]]:
-    """Errors of some results against a fine look at each design by itself."""
+    """Errors of some results against a fine solution of each design by itself."""
     space, system, goal = given
     fine = Resolution(elements=640)
 
@@ -219,8 +218,8 @@ def accuracy(given: Given, points: np.ndarray) -> dict[str, list[str]]:
 
     truth = exact(points)
     found = {}
-    for name, look in LOOKS.items():
-        metrics = evaluate_many(*given, points, look).metrics[0]
+    for name, resolution in RESOLUTIONS.items():
+        metrics = evaluate_many(*given, points, resolution).metrics[0]
         errors = {
             each: np.abs(getattr(metrics, each) / np.asarray(getattr(truth, each)) - 1)
             for each in (*OF_OBJECTIVE, "mean_torque", *EXTREMES)
@@ -241,11 +240,11 @@ def slope_errors(given: Given, points: np.ndarray) -> dict[str, list[float]]:
         for at in jnp.asarray(points)
     ]
     errors = {}
-    for name, look in LOOKS.items():
-        cycles, _ = judge_and_keep(*given, points, look)
-        lanes = slopes_in_lanes(*given, points, cycles, look).objective
+    for name, resolution in RESOLUTIONS.items():
+        cycles, _ = assess_and_keep(*given, points, resolution)
+        found = slopes_in_batch(*given, points, cycles, resolution).objective
         errors[name] = [
-            float(np.max(np.abs(lanes[:, place] - one)) / np.max(np.abs(one)))
+            float(np.max(np.abs(found[:, place] - one)) / np.max(np.abs(one)))
             for place, one in enumerate(alone)
         ]
     return errors

@@ -17,7 +17,7 @@ from pathlib import Path
 
 MOTOR = Path(__file__).parents[1] / "examples" / "wheel_motor.toml"
 ANOTHER = MOTOR.with_name("mill_motor.toml")
-CAMRING = "from camring.interfaces.cli import main; main()"
+CAMRING = "from camring.cli.app import main; main()"
 
 
 def seconds(*words: str, cache: str) -> float:

@@ -2,7 +2,7 @@
 
     python benchmarks/fmu_speed.py [MOTOR.toml]
 
-Exports the motor, compiles its sources with tests/interfaces/fmu_driver.c and runs a
+Exports the motor, compiles its sources with tests/exchange/fmu_driver.c and runs a
 million steps over the whole table.
 """
 
@@ -12,7 +12,7 @@ import tempfile
 import zipfile
 from pathlib import Path
 
-from camring.interfaces.compilation_cache import keep_compiled_programs
+from camring.programs.compilation_cache import keep_compiled_programs
 
 ROOT = Path(__file__).parent.parent
 STEPS = 1_000_000
@@ -21,9 +21,9 @@ STEPS = 1_000_000
 def main(motor: Path) -> None:
     keep_compiled_programs()
 
-    from camring.interfaces.config import read_motor_file
-    from camring.interfaces.export import export
-    from camring.interfaces.fmu.compiler import SOURCES
+    from camring.exchange.drawings import export
+    from camring.exchange.fmu.compiler import SOURCES
+    from camring.files.motor import read_motor_file
 
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -31,7 +31,7 @@ def main(motor: Path) -> None:
         with zipfile.ZipFile(written[0].path) as archive:
             archive.extractall(folder)
         sources = [folder / "sources" / each for each in SOURCES]
-        driver = ROOT / "tests" / "interfaces" / "fmu_driver.c"
+        driver = ROOT / "tests" / "exchange" / "fmu_driver.c"
         subprocess.run(
             ["cc", "-std=c99", "-O2", "-I", folder / "sources", "-o", folder / "driver", driver,
              *sources, "-lm"], check=True,

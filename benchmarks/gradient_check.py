@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from camring.interfaces.compilation_cache import keep_compiled_programs
+from camring.programs.compilation_cache import keep_compiled_programs
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 STEPS = (2e-3, 1e-3)
@@ -22,14 +22,14 @@ STEPS = (2e-3, 1e-3)
 
 DOUBT = 1e-4
 LEAST_SCALE = 0.1
-"""Constraints are counted in their limits; a slope of nil is judged by this."""
+"""Constraints are counted in their limits; a slope of nil is compared with this."""
 
 
 def compared(name: str, designs: int, seed: int = 0) -> dict[str, dict[str, float]]:
     """Errors of the slopes of objective and constraints of a motor, as shares of the slope."""
     import camring
-    from camring.interfaces.compiled import assess, slopes, solve
-    from camring.interfaces.evaluator import applied
+    from camring.evaluation.evaluator import applied
+    from camring.programs.compiled import assess, slopes, solve
 
     file = camring.read_motor_file(EXAMPLES / f"{name}_motor.toml")
     space, system, goal = file.design_space, file.system, file.goal

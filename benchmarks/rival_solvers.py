@@ -1,4 +1,4 @@
-"""Other people's solvers on the periodic pressure of one chamber (model.md section 3).
+"""Other people's solvers on the periodic pressure of one chamber (docs/theory.md section 3).
 
 Each marches two periods from the supply pressure at the middle of a supply window and
 gives the second. The state is the pressure above return over the supply-return
@@ -19,11 +19,11 @@ import jax.numpy as jnp
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from camring.metrics.independent.chamber import Chamber
 from camring.physics.chamber import chamber_at
 from camring.physics.cycle import reference_radius
 from camring.physics.pressure import pressure_slope
 from camring.physics.system import System
+from camring.reference.chamber import Chamber
 
 SCIPY_TOLERANCES = {
     "Radau": (1e-3, 1e-5, 1e-7),

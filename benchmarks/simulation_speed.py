@@ -1,12 +1,12 @@
-"""How long simulating takes: one motor, a batch, and the second rung beside the first.
+"""How long simulating takes: one motor, a batch, and the detailed laws beside the first.
 
     python benchmarks/simulation_speed.py [--designs 1000]
 
 Everything is measured in one run against a rival in the same run: SciPy's LSODA at
-tolerance 1e-9 on the same motor (`metrics/independent`), which gives results of the
-same accuracy. All results of model.md section 10 are computed, not pressure alone. A
+tolerance 1e-9 on the same motor (`reference`), which gives results of the
+same accuracy. All results of docs/theory.md section 10 are computed, not pressure alone. A
 second table has how far the results of one motor are from that solver at 1e-11, by
-`simulate` and `summarise` and in a lane of its own, final resolution either way.
+`simulate` and `summarise` and as a batch of one, final resolution either way.
 """
 
 import argparse
@@ -24,16 +24,16 @@ import numpy as np
 from stopwatch import wall_times
 from wheel_motor import aerated, as_given, at_one_point
 
-from camring.interfaces.lane_program import LaneProgram
 from camring.metrics.error_estimate import relative_error
-from camring.metrics.independent import independent_results
 from camring.metrics.summary import Metrics, summarise
-from camring.objective.lanes import measure_designs
+from camring.objective.batch import measure_designs
 from camring.objective.slopes import Operated, directions, result_slopes, results_used
-from camring.physics.cycle import simulate
-from camring.physics.lane_cycle import LanesLook
+from camring.physics.batch_cycle import BatchResolution
+from camring.physics.heat.simulation import simulate
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
+from camring.programs.batch_program import BatchProgram
+from camring.reference import independent_results
 
 RESULTS = Path(__file__).with_name("results") / "simulation_speed.json"
 REPEATS = 9
@@ -84,30 +84,30 @@ def main() -> None:
     many = radii + jnp.asarray(wobble)
 
     rows, off = {}, {}
-    in_lanes = LaneProgram(measure_designs)
+    in_batch = BatchProgram(measure_designs)
     rival = seconds(lambda: independent_results(motor, fluid, point, harmonics, 1e-9), repeats=1)
     rows["SciPy LSODA, tolerance 1e-9"] = rival
-    for rung, oil in (("constant modulus", fluid), ("with air", aerated(fluid))):
+    for name_of_oil, oil in (("constant modulus", fluid), ("with air", aerated(fluid))):
         whole = jax.jit(
             lambda radii, oil=oil: summarise(simulate(with_radii(radii), oil, point), harmonics)
         )
-        rows[f"one motor in one program, {rung}"] = seconds(lambda whole=whole: whole(radii))
+        rows[f"one motor in one program, {name_of_oil}"] = seconds(lambda whole=whole: whole(radii))
         one = programs(Resolution(), batched=False)
-        name = f"one motor by `simulate` and `summarise`, {rung}"
+        name = f"one motor by `simulate` and `summarise`, {name_of_oil}"
         rows[name] = seconds(lambda one=one, oil=oil: one(radii, oil))
-        lane = one_lane(eqx.tree_at(lambda each: each.fluid, at_one_point(system), oil))
-        measured = partial(in_lanes, lane, harmonics, LanesLook())
-        rows[f"one motor in a lane of its own, {rung}"] = seconds(measured)
+        alone = one_design(eqx.tree_at(lambda each: each.fluid, at_one_point(system), oil))
+        measured = partial(in_batch, alone, harmonics, BatchResolution())
+        rows[f"one motor as a batch of one, {name_of_oil}"] = seconds(measured)
         truth = independent_results(motor, oil, point, harmonics, 1e-11)
         ((metrics,), _) = measured()
         found = {
             "one motor": one(radii, oil),
-            "in a lane": jax.tree.map(lambda leaf: leaf[0], metrics),
+            "as a batch of one": jax.tree.map(lambda leaf: leaf[0], metrics),
         }
-        off[rung] = {name: differences(each, truth) for name, each in found.items()}
+        off[name_of_oil] = {name: differences(each, truth) for name, each in found.items()}
         for name, resolution in (("final", Resolution()), ("search", Resolution.coarse())):
             batch = programs(resolution, batched=True)
-            rows[f"each of {designs}, {name} resolution, {rung}"] = (
+            rows[f"each of {designs}, {name} resolution, {name_of_oil}"] = (
                 seconds(lambda batch=batch, oil=oil: batch(many, oil), repeats=3) / designs
             )
 
@@ -116,7 +116,9 @@ def main() -> None:
     several = Operated(along.motor, along.fluid, along.operating_points[0])
     cycle = eqx.filter_jit(simulate)(motor, fluid, point)
     of_results = eqx.filter_jit(result_slopes)
-    name = f"slopes of what the goal uses by {space.dimension} variables, from a cycle at hand"
+    name = (
+        f"gradients of what the objective uses by {space.dimension} variables, from a cycle at hand"
+    )
     rows[name] = seconds(lambda: of_results(cycle, several, names, goal.harmonics))
 
     print(f"{os.cpu_count()} cores; wheel motor at {float(point.shaft_speed) * 9.5493:.0f} rpm")
@@ -125,14 +127,14 @@ def main() -> None:
         print(f"| {name} | {1e3 * value:.4g} ms | {rival / value:.0f} |")
     asked.json.parent.mkdir(exist_ok=True)
     asked.json.write_text(json.dumps({"seconds": rows, "off": off}, indent=1) + "\n")
-    for rung, columns in off.items():
-        print(f"\n| {rung}: off by | " + " | ".join(columns) + " |\n|---|---|---|")
+    for name_of_oil, columns in off.items():
+        print(f"\n| {name_of_oil}: off by | " + " | ".join(columns) + " |\n|---|---|---|")
         for name in next(iter(columns.values())):
             shares = (f"{each.get(name, np.nan):.1e}" for each in columns.values())
             print(f"| {name.replace('_', ' ')} | " + " | ".join(shares) + " |")
 
 
-def one_lane(system: System) -> System:
+def one_design(system: System) -> System:
     return jax.tree.map(lambda leaf: np.asarray(leaf)[..., None], system)
 
 

@@ -18,8 +18,8 @@ from camring.numerics.periodic import _interpolate as interpolate
 from camring.numerics.periodic import _layer_width as layer_width
 from camring.numerics.periodic import extent, newton_step, settle, share_of_range
 from camring.numerics.radau import STAGES, element_powers
+from camring.physics.cycle import _assessed as assessed
 from camring.physics.cycle import _equation as equation_of
-from camring.physics.cycle import _judged as judged
 from camring.physics.cycle import reference_radius
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
@@ -69,7 +69,7 @@ def stage_times(system: System) -> dict[str, float]:
     def finish(equation, fixed, mesh, stages, count):
         return settle(equation, fixed, period, mesh, stages, count)
 
-    judge = jit(judged)
+    assess = jit(assessed)
     spent: dict[str, float] = {}
 
     def timed(name, action):
@@ -98,7 +98,7 @@ def stage_times(system: System) -> dict[str, float]:
     orbit = timed(
         "last step and residual", lambda: finish(equation, breakpoints, mesh, stages, count)
     )
-    timed("verdict", lambda: judge(motor, fluid, point, known, orbit))
+    timed("verdict", lambda: assess(motor, fluid, point, known, orbit))
     spent[f"all stages, one by one (Newton steps {steps})"] = sum(spent.values())
     spent["whole"] = fastest(lambda: camring.simulate(motor, fluid, point, resolution))
     cycle = camring.simulate(motor, fluid, point, resolution)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from camring.interfaces.compilation_cache import keep_compiled_programs
+from camring.programs.compilation_cache import keep_compiled_programs
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 RESULTS = Path(__file__).with_name("results")

@@ -4,13 +4,15 @@
         [--seeds-of-scbo 1]
 
 Every study is the command itself in a process of its own, as a user runs it, with
-the example's budget of 300 evaluations. It prints the tables of the README: what was
+the example's budget of 300 evaluations. It prints the tables of docs/notes/search.md: what was
 won, how far the worst study's best objective is above the best that any study of that
 motor found, and after how many evaluations they were within a hundredth and a thousandth
-of that. All studies are saved as JSON in `benchmarks/results`.
+of that. All studies are saved as compressed JSON in
+`benchmarks/results/three_motors.json.gz` (`gzip -dc` shows it).
 """
 
 import argparse
+import gzip
 import json
 import math
 import subprocess
@@ -35,7 +37,7 @@ def study(motor: str, seed: int, theory: bool, method: str) -> dict:
         folder, motor_file = Path(scratch) / "study", Path(scratch) / f"{motor}_motor.toml"
         motor_file.write_text(text.replace("[search]", f'[search]\nmethod = "{method}"'))
         command = [
-            *(sys.executable, "-c", "from camring.interfaces.cli import main; main()"),
+            *(sys.executable, "-c", "from camring.cli.app import main; main()"),
             *("optimise", str(motor_file), "--out", str(folder)),
             *("--budget", str(BUDGET), "--seed", str(seed), "--json"),
             *([] if theory else ["--no-theory"]),
@@ -78,7 +80,7 @@ def tables(rows: list[dict]) -> None:
         "| time | validated |\n|---|---|---|---|---|---|---|---|---|---|"
     )
     for group in groups:
-        given, best = zip(*[worst_duty(row) for row in group], strict=True)
+        given, best = zip(*[worst_point(row) for row in group], strict=True)
         before, after = given[0]["torque_ripple"], [each["torque_ripple"] for each in best]
         times = [row["seconds"] for row in group]
         gains = [gain(row) for row in group]
@@ -111,7 +113,7 @@ def head(group: list[dict]) -> str:
     return f"| {first['motor']} | {first['method']} | {theory} | {len(group)}"
 
 
-def worst_duty(row: dict) -> tuple[dict, dict]:
+def worst_point(row: dict) -> tuple[dict, dict]:
     """Results given and found at the operating point where least was won."""
     pairs = list(zip(row["given"], row["best"], strict=True))
     return max(pairs, key=lambda pair: pair[1]["torque_ripple"] / pair[0]["torque_ripple"])
@@ -161,7 +163,9 @@ def main() -> None:
                 print(written(rows[-1]), file=sys.stderr, flush=True)
     tables(rows)
     RESULTS.mkdir(exist_ok=True)
-    (RESULTS / "three_motors.json").write_text(json.dumps(rows, indent=1) + "\n")
+    text = json.dumps(rows, indent=1) + "\n"
+    # Without the hour, so that the same studies are the same file.
+    (RESULTS / "three_motors.json.gz").write_bytes(gzip.compress(text.encode(), mtime=0))
 
 
 if __name__ == "__main__":

@@ -6,12 +6,12 @@ import equinox as eqx
 import jax.numpy as jnp
 
 import camring
-from camring.interfaces.config import MotorFile, parse_motor_file
-from camring.physics.aerated_fluid import AeratedFluid
-from camring.physics.fluid import AbstractFluid
+from camring.files.motor import MotorFile, parse_motor_file
+from camring.physics.oil.aerated_fluid import AeratedFluid
+from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.system import System
 
-PATH = Path(__file__).parents[1] / "examples" / "wheel_motor.toml"
+PATH = Path(__file__).parents[1] / "examples" / "derivation_motor.toml"
 MORE_VARIABLES = """[design_space]
 "motor.valve_plate.port_area" = ["50 mm^2", "70 mm^2"]
 "motor.valve_plate.discharge_coefficient" = [0.6, 0.7]

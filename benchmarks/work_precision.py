@@ -3,7 +3,7 @@
     pip install "camring[rivals]"
     python benchmarks/work_precision.py [--motor FILE] [--rounds 7] [--only ours scipy ...]
 
-One motor, one operating point: model.md section 3. The error is the largest difference of
+One motor, one operating point: docs/theory.md section 3. The error is the largest difference of
 pressure at 2000 angles from SciPy's LSODA between kinks at tolerance 1e-11, over the
 supply-return difference. Times are of warm programs, solving only: processor time, all
 threads added up, the least of some rounds in which all solvers take turns.
@@ -33,14 +33,15 @@ from stage_times import stage_times
 from work_precision_picture import draw
 
 import camring
-from camring.interfaces.compilation_cache import keep_compiled_programs
-from camring.interfaces.lane_program import LaneProgram
-from camring.metrics.independent.machine import machine_of
-from camring.metrics.independent.orbit import Orbit, periodic_orbit
 from camring.numerics.radau import element_powers, horner
-from camring.physics.lane_cycle import LanesLook, simulate_lanes
+from camring.physics.batch_cycle import BatchResolution
+from camring.physics.heat.batch_simulation import simulate_batch
 from camring.physics.resolution import Resolution
 from camring.physics.system import System
+from camring.programs.batch_program import BatchProgram
+from camring.programs.compilation_cache import keep_compiled_programs
+from camring.reference.machine import machine_of
+from camring.reference.orbit import Orbit, periodic_orbit
 
 ROOT = Path(__file__).parents[1]
 MOTOR = ROOT / "tests" / "published" / "data" / "mid.toml"
@@ -49,20 +50,20 @@ PICTURE = ROOT / "docs" / "pictures" / "work_precision.svg"
 
 ANGLES = 2000
 ELEMENTS = (40, 80, 160, 320, 640, 1280, 2560)
-LANE_ELEMENTS = (40, 80, 120, 240, 480)
-LANES = 256
+BATCH_ELEMENTS = (40, 80, 120, 240, 480)
+MEMBERS = 256
 WANTED = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
 OURS = "camring, one motor"
-BATCH = f"camring, {LANES} in lanes"
+BATCH = f"camring, {MEMBERS} in a batch"
 ENOUGH = 1.0
 """Processor seconds after which a setting takes no more turns."""
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--motor", type=Path, default=MOTOR, help="a motor file, first rung")
+    parser.add_argument("--motor", type=Path, default=MOTOR, help="a motor file, plain laws")
     parser.add_argument("--rounds", type=int, default=7, help="turns of each solver")
-    kinds = ("scipy", "casadi", "diffrax", "lanes", "ours")
+    kinds = ("scipy", "casadi", "diffrax", "batch", "ours")
     parser.add_argument("--only", nargs="+", choices=kinds, default=kinds)
     asked = parser.parse_args()
     keep_programs()
@@ -71,11 +72,9 @@ def main() -> None:
     point = system.operating_points[0]
     machine = machine_of(system.motor, system.fluid, point)
     shapes = {(port.shape, port.notch_area) for port in (machine.supply, machine.return_)}
-    first_rung = machine.oil.law == "constant" and machine.orifice == "turbulent"
-    if not first_rung or shapes != {("linear", 0.0)} or machine.manifold is not None:
-        raise SystemExit(
-            "CasADi is told the first-rung laws alone; take a motor file without others"
-        )
+    plain_laws = machine.oil.law == "constant" and machine.orifice == "turbulent"
+    if not plain_laws or shapes != {("linear", 0.0)} or machine.manifolds:
+        raise SystemExit("CasADi has the plain laws alone; take a motor file without others")
     orbit = periodic_orbit(machine, 1e-11)
     if orbit.multiplier > 1e-9:
         raise SystemExit(
@@ -87,7 +86,7 @@ def main() -> None:
     many = neighbours(system)
     makers = {
         "ours": lambda: our_runs(system, angles),
-        "lanes": lambda: lane_runs(system, many, angles),
+        "batch": lambda: batch_runs(system, many, angles),
         "scipy": lambda: scipy_runs(chamber, angles),
         "casadi": lambda: casadi_runs(chamber, angles),
         "diffrax": lambda: diffrax_runs(system, chamber, angles, many),
@@ -118,7 +117,7 @@ def main() -> None:
 
 
 def keep_programs() -> None:
-    """A second run compiles nothing: JAX stands imported, so it is told directly."""
+    """A second run compiles nothing: JAX stands imported, so it is set directly."""
     folder = keep_compiled_programs()
     if folder:
         jax.config.update("jax_compilation_cache_dir", str(folder))
@@ -142,8 +141,8 @@ def present(kind: str, runs: Iterator[Run]) -> Iterator[Run]:
 def neighbours(system: System) -> np.ndarray:
     """Control radii of the motor's cam and of others near it, one a row."""
     radii = np.asarray(system.motor.cam.control_radii)
-    wobble = 1e-3 * np.ptp(radii) * np.random.default_rng(0).normal(size=(LANES, *radii.shape))
-    return radii + np.where(np.arange(LANES)[:, None] > 0, wobble, 0)
+    wobble = 1e-3 * np.ptp(radii) * np.random.default_rng(0).normal(size=(MEMBERS, *radii.shape))
+    return radii + np.where(np.arange(MEMBERS)[:, None] > 0, wobble, 0)
 
 
 def our_runs(system: System, angles: np.ndarray) -> Iterator[Run]:
@@ -161,8 +160,8 @@ def our_runs(system: System, angles: np.ndarray) -> Iterator[Run]:
         yield Run(OURS, str(elements), lambda run=run: jax.block_until_ready(run()), pressure)
 
 
-def lane_runs(system: System, many: np.ndarray, angles: np.ndarray) -> Iterator[Run]:
-    """One call of one thread, as `evaluate_many` makes many; the first lane is the motor itself."""
+def batch_runs(system: System, many: np.ndarray, angles: np.ndarray) -> Iterator[Run]:
+    """One call of one thread, as `evaluate_many` makes many; the first is the motor itself."""
     point = system.operating_points[0]
     wide = jax.tree.map(
         lambda leaf: jnp.broadcast_to(leaf[..., None], (*leaf.shape, len(many))),
@@ -171,10 +170,14 @@ def lane_runs(system: System, many: np.ndarray, angles: np.ndarray) -> Iterator[
     motor, fluid, point = eqx.tree_at(
         lambda each: each[0].cam.control_radii, wide, jnp.asarray(many.T)
     )
-    for elements in LANE_ELEMENTS:
-        like = LanesLook() if elements > LanesLook.search().elements else LanesLook.search()
-        look = replace(like, elements=elements)
-        run = partial(LaneProgram(simulate_lanes), motor, fluid, point, look)
+    for elements in BATCH_ELEMENTS:
+        like = (
+            BatchResolution()
+            if elements > BatchResolution.search().elements
+            else BatchResolution.search()
+        )
+        fine = replace(like, elements=elements)
+        run = partial(BatchProgram(simulate_batch), motor, fluid, point, fine)
 
         def pressure(run=run) -> np.ndarray:
             orbit = run().cycle.orbit

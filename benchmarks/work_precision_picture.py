@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-# Okabe and Ito's colours, told apart by every kind of sight.
+# Okabe and Ito's colours, distinguished by every kind of sight.
 STYLES = {
     "camring, one motor": ("#D55E00", "o", "-"),
-    "camring, 256 in lanes": ("#D55E00", "s", "--"),
+    "camring, 256 in a batch": ("#D55E00", "s", "--"),
     "CasADi CVODES": ("#0072B2", "^", "-"),
     "CasADi IDAS": ("#56B4E9", "v", "-"),
     "diffrax Kvaerno3": ("#009E73", "D", "-"),
@@ -20,7 +20,7 @@ SHOWN = (3e-2, 1e-10)
 
 def best_of(rows: list[dict], name: str) -> list[dict]:
     """The settings of a solver, in either way, that no other of its own beats in both."""
-    batch = "in lanes" in name or "vmap" in name
+    batch = "in a batch" in name or "vmap" in name
     own = [r for r in rows if r["solver"].startswith(name) and (batch or "vmap" not in r["solver"])]
     own.sort(key=lambda row: row["seconds"])
     front: list[dict] = []

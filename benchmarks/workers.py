@@ -16,12 +16,12 @@ from pathlib import Path
 
 import numpy as np
 
-from camring.interfaces.coordinator import Search, search
-from camring.interfaces.executors import Workers
-from camring.interfaces.interrupt import Interruption
-from camring.interfaces.record import Outcome
-from camring.interfaces.study_folder import StudyFolder
+from camring.evaluation.executors import Workers
+from camring.evaluation.interrupt import Interruption
+from camring.evaluation.outcome import Outcome
 from camring.search.strategies import Task, strategy_named
+from camring.studies.coordinator import Search, search
+from camring.studies.study_folder import StudyFolder
 
 SECONDS, DIMENSION = 0.05, 6
 GIVEN = b"# no motor: the study's loop and its database only\n"
@@ -42,7 +42,7 @@ def evaluate(point, computes):
 def local_cluster(count):
     from distributed import LocalCluster
 
-    from camring.interfaces.dask_cluster import Cluster
+    from camring.evaluation.dask_cluster import Cluster
 
     with (
         LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=":0") as local,
@@ -53,11 +53,11 @@ def local_cluster(count):
 
 def seconds(executors, count, method, batch, evaluations, computes):
     """Wall time of a study, the workers being awake."""
-    judge = functools.partial(evaluate, computes=computes)
+    asked = functools.partial(evaluate, computes=computes)
     strategy = strategy_named(method, Task(DIMENSION, evaluations, batch=batch))
-    task = Search(judge, ("edge",), strategy, evaluations, seed=1)
+    task = Search(asked, ("edge",), strategy, evaluations, seed=1)
     with executors(count) as executor, tempfile.TemporaryDirectory() as place:
-        wake = [executor.submit(judge, np.full(DIMENSION, 0.5)) for _ in range(2 * count)]
+        wake = [executor.submit(asked, np.full(DIMENSION, 0.5)) for _ in range(2 * count)]
         for future in wake:
             future.result()
         folder = StudyFolder.create(Path(place) / "study", GIVEN, {})

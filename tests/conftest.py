@@ -1,7 +1,11 @@
 """Shared by all tests: helper modules beside this file, and one hypothesis profile."""
 
+import ctypes
+import gc
 import os
+import resource
 import shutil
+import signal
 import sys
 import tempfile
 from pathlib import Path
@@ -9,13 +13,16 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from camring.programs.compilation_cache import EFFORT, PROGRAMS, SWITCH, keep_compiled_programs
+
 sys.path.insert(0, str(Path(__file__).parent))
 
 # Two workers on two cores: linear algebra that spins in both makes each wait for the other.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-# Tests compile what they look at; the command line keeps its programs as it does for users.
-os.environ.setdefault("CAMRING_PROGRAMS", "")
+# Tests in the background of a shell ignore Ctrl-C, and so would the commands that they start.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # JAX compiles on first use, so time limits for one example mean nothing; the
 # examples are the same on every machine, so that a red test is red for everyone.
@@ -29,37 +36,82 @@ settings.register_profile(
 settings.load_profile("camring")
 
 
-# Every compiled program keeps some memory maps; Linux allows a process 65,530 of them,
-# and XLA does not survive the refusal of one more.
-MAPS = Path("/proc/self/maps")
+# Memory that a process of tests may hold before it gives its programs back. Every one also keeps
+# some memory maps; Linux allows a process 65,530, and XLA does not survive the refusal of one more.
+MOST_BYTES = 700_000_000
 MOST_MAPS = 30_000
+MAPS, SIZES = Path("/proc/self/maps"), Path("/proc/self/statm")
+
+
+def resident_bytes() -> int:
+    pages = int(SIZES.read_text().split()[1]) if SIZES.exists() else 0
+    return pages * resource.getpagesize()
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _private_state(tmp_path_factory):
+    """What camring remembers of its user outside every study, such as a consent."""
+    os.environ["XDG_STATE_HOME"] = str(tmp_path_factory.mktemp("state"))
 
 
 @pytest.fixture(autouse=True, scope="module")
 def _forget_programs():
     """Between two files of tests; what is needed again comes from the folder on disk."""
     yield
-    if MAPS.exists() and MAPS.read_bytes().count(b"\n") > MOST_MAPS:
+    many = MAPS.exists() and MAPS.read_bytes().count(b"\n") > MOST_MAPS
+    if many or resident_bytes() > MOST_BYTES:
         import jax
 
-        from camring.interfaces.kept_program import forget_programs
+        from camring.programs.kept_program import forget_programs
 
         jax.clear_caches()
         forget_programs()
+        gc.collect()
+        if sys.platform == "linux":
+            ctypes.CDLL(None).malloc_trim(0)
 
 
-COMPILED = "JAX_COMPILATION_CACHE_DIR"
-_own_folder: list[str] = []
+@pytest.fixture(autouse=True)
+def _same_folder(monkeypatch):
+    """A command run in this process may say that programs are kept elsewhere, or nowhere."""
+    monkeypatch.setenv(PROGRAMS, os.environ[PROGRAMS])
+
+
+@pytest.fixture(scope="session")
+def simulated():
+    """One motor simulated at two speeds, for all tests of what is written about it."""
+    import equinox as eqx
+    import motors
+
+    from camring.physics.system import System
+    from camring.programs.compiled import simulate
+
+    case = motors.sound_case(0)
+    slow = eqx.tree_at(lambda p: p.shaft_speed, case.point, case.point.shaft_speed / 2)
+    system = System(case.motor, case.fluid, (case.point, slow))
+    cycles = [simulate(system.motor, system.fluid, point) for point in system.operating_points]
+    return system, cycles
+
+
+CACHE_HOME = "XDG_CACHE_HOME"
+_cache_folder: list[str] = []
 
 
 def pytest_configure(config):
-    """One folder of compiled programs for all worker processes of this run."""
-    if not hasattr(config, "workerinput") and COMPILED not in os.environ:
-        _own_folder.append(tempfile.mkdtemp(prefix="camring-tests-"))
-        os.environ[COMPILED] = _own_folder[0]
+    """One folder of compiled programs for all processes of this run: workers and commands.
+
+    `CAMRING_TESTS_CACHE` names one to begin with and to leave behind.
+    """
+    if not hasattr(config, "workerinput"):
+        if "CAMRING_TESTS_CACHE" not in os.environ:
+            _cache_folder.append(tempfile.mkdtemp(prefix="camring-tests-"))
+        os.environ[CACHE_HOME] = os.environ.get("CAMRING_TESTS_CACHE") or _cache_folder[0]
+        os.environ.pop(SWITCH, None)
+        # A structure's programs run for some ten motors: their compilation is what costs.
+        os.environ.setdefault(EFFORT, "quick")
+    keep_compiled_programs()
 
 
 def pytest_unconfigure(config):
-    for folder in _own_folder:
+    for folder in _cache_folder:
         shutil.rmtree(folder, ignore_errors=True)
-        os.environ.pop(COMPILED, None)

@@ -3,7 +3,7 @@
 Everything is drawn from a seeded generator, so a failing seed is a test case.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import equinox as eqx
@@ -17,11 +17,11 @@ from camring.geometry.extremes import extreme_radius
 from camring.geometry.material import Material
 from camring.geometry.piston import Piston, Roller
 from camring.geometry.valve_plate import LinearWindow, Port, ValvePlate
-from camring.physics.fluid import ConstantFluid
 from camring.physics.friction import ViscousFriction
-from camring.physics.gallery import Manifold
 from camring.physics.leakage import ConstantLeakage
+from camring.physics.manifold.manifold import Manifold
 from camring.physics.motor import Motor
+from camring.physics.oil.fluid import ConstantFluid
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.orifice import TurbulentOrifice
 
@@ -31,7 +31,7 @@ REVOLUTION_PER_MINUTE = 2 * pi / 60
 
 @dataclass(frozen=True)
 class Case:
-    """One motor with its oil and its duty."""
+    """One motor with its oil and its operating point."""
 
     motor: Motor
     fluid: ConstantFluid
@@ -100,7 +100,7 @@ def random_cam(rng, structure: Structure, inner: float, stroke: float) -> Abstra
 
 
 def sound_case(seed: int, structure: Structure | None = None) -> Case:
-    """A motor an engineer might build, at a duty it might run at.
+    """A motor an engineer might build, at an operating point it might run at.
 
     Without a structure the seed picks one of `STRUCTURES`.
     """
@@ -109,8 +109,8 @@ def sound_case(seed: int, structure: Structure | None = None) -> Case:
     lobes, pistons = structure.lobes, structure.pistons
     bore = rng.uniform(0.025, 0.06)
     stroke = bore * rng.uniform(0.3, 0.5)
-    room = lobes * stroke / rng.uniform(0.7, 1.1)  # keeps the pressure angle below about 35 deg
-    inner = max(room, 1.3 * pistons * bore / (2 * pi))
+    least = lobes * stroke / rng.uniform(0.7, 1.1)  # keeps the pressure angle below about 35 deg
+    inner = max(least, 1.3 * pistons * bore / (2 * pi))
     cam = random_cam(rng, structure, inner, stroke)
     area = pi * bore**2 / 4
     pitch = 2 * pi / lobes
@@ -153,22 +153,28 @@ def sound_case(seed: int, structure: Structure | None = None) -> Case:
     return Case(motor, fluid, OperatingPoint(speed, supply, back, case))
 
 
-def with_manifold(case: Case, share: float, strokes: float) -> Case:
-    """The motor fed through a line and a gallery.
+def with_manifold(case: Case, share: float, strokes: float, name: str = "manifold") -> Case:
+    """The motor fed through a line and a manifold; or emptied, by the name `return_manifold`.
 
     `share` of the pressure difference is lost in the line at the displaced flow;
-    the gallery holds the strokes of all pistons `strokes` times.
+    the manifold holds the strokes of all pistons `strokes` times.
     """
     motor, area = case.motor, float(case.motor.piston.area)
     stroke = float(extreme_radius(motor.cam, 1) - extreme_radius(motor.cam, -1))
     swept = motor.pistons * area * stroke
     flow = swept * motor.lobes * float(case.point.shaft_speed) / (2 * pi)
     manifold = Manifold(strokes * swept, flow / (share * float(case.point.pressure_drop)))
-    return Case(replaced_manifold(motor, manifold), case.fluid, case.point)
+    return Case(replaced_manifold(motor, manifold, name), case.fluid, case.point)
 
 
-def replaced_manifold(motor, manifold):
-    return eqx.tree_at(lambda m: m.manifold, motor, manifold, is_leaf=lambda x: x is None)
+def with_drawn_manifold(case: Case, random: np.random.Generator, name: str = "manifold") -> Case:
+    """2 to 20 % of the pressure difference lost in the line, 0.04 to 30 strokes in the manifold."""
+    share = 0.02 * 10 ** random.uniform()
+    return with_manifold(case, share, 10 ** random.uniform(-1.4, 1.5), name)
+
+
+def replaced_manifold(motor, manifold, name="manifold"):
+    return replace(motor, **{name: manifold})
 
 
 def stacked(cases: list[Case]) -> tuple:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from camring.metrics.independent import Machine, Oil, Window
+from camring.reference import Machine, Oil, Window
 
 DATA = Path(__file__).parent / "published" / "data"
 UNITS = {

@@ -11,24 +11,24 @@ import equinox as eqx
 import pytest
 
 import camring
+from benchmarks import import_graph
 
 ROOT = Path(__file__).parent.parent
 SOURCE = ROOT / "src" / "camring"
 LONGEST_FILE = 350
+LARGEST_FOLDER = 25
 
-LADDER = ("numerics", "geometry", "physics", "metrics", "objective", "interfaces")
-MAY_IMPORT = {room: set(LADDER[: place + 1]) for place, room in enumerate(LADDER)}
-MAY_IMPORT["search"] = {"search", "numerics"}
-MAY_IMPORT["interfaces"].add("search")
-ONLY_INTERFACES = {"pydantic", "pint", "typer", "click", "rich", "xarray", "h5netcdf", "h5py"}
-ONLY_INTERFACES |= {"ezdxf", "xlsxwriter", "OCP", "optuna"}
-ONLY_INTERFACES |= {"matplotlib"}  # and there only in `plots`, loaded when a figure is asked for
+NO_MOTOR_FILES = ("numerics", "compiler", "geometry", "physics", "metrics", "objective")
+NO_MOTOR_FILES += ("reference", "search", "version.py")
+ONLY_AT_THE_EDGE = {"pydantic", "pint", "typer", "click", "rich", "xarray", "h5netcdf", "h5py"}
+ONLY_AT_THE_EDGE |= {"ezdxf", "xlsxwriter", "OCP", "optuna"}
+ONLY_AT_THE_EDGE |= {"matplotlib"}  # and there only in `plots`, loaded when a figure is asked for
 NOBODY = {"torch", "pandas"}
 
 FILES = sorted(SOURCE.rglob("*.py"))
 
 
-def room(path):
+def package(path):
     return path.relative_to(SOURCE).parts[0]
 
 
@@ -40,8 +40,6 @@ def imported(path):
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path.name} imports by a relative name"
             yield node.module
-            if node.module == "camring":
-                yield from (f"camring.{a.name}" for a in node.names if a.name in MAY_IMPORT)
 
 
 def modules():
@@ -60,29 +58,62 @@ def nouns():
     return found
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(SOURCE)))
-class TestEveryFile:
-    def test_imports_run_one_way(self, path):
-        if path.parent == SOURCE:
-            return
-        for parts in (name.split(".") for name in imported(path)):
-            if parts[0] == "camring" and len(parts) > 1:
-                assert parts[1] in MAY_IMPORT[room(path)], ".".join(parts)
-            assert parts[0] not in NOBODY
-            if room(path) != "interfaces":
-                assert parts[0] not in ONLY_INTERFACES, ".".join(parts)
-
-    def test_is_short_enough_to_hold_one_idea(self, path):
-        assert len(path.read_text().splitlines()) <= LONGEST_FILE
-
-    def test_says_what_it_is(self, path):
-        text = path.read_text()
-        assert not text.strip() or ast.get_docstring(ast.parse(text))
+def misplaced(path):
+    """Modules that a file imports and must not; import directions are import-linter's."""
+    for name in imported(path):
+        top = name.split(".")[0]
+        if top in NOBODY or (package(path) in NO_MOTOR_FILES and top in ONLY_AT_THE_EDGE):
+            yield name
 
 
-def test_the_rooms_are_those_of_the_house():
-    rooms = {path.name for path in SOURCE.iterdir() if path.is_dir() and path.name[0] != "_"}
-    assert rooms == set(MAY_IMPORT)
+def described(path):
+    text = path.read_text()
+    return not text.strip() or bool(ast.get_docstring(ast.parse(text)))
+
+
+def test_what_knows_no_motor_file_loads_nothing_that_reads_or_draws():
+    wrong = {str(path): list(misplaced(path)) for path in FILES if path.parent != SOURCE}
+    assert not {path: names for path, names in wrong.items() if names}
+
+
+def test_files_are_short_enough_to_hold_one_idea():
+    lines = {str(path): len(path.read_text().splitlines()) for path in FILES}
+    assert not {path: count for path, count in lines.items() if count > LONGEST_FILE}
+
+
+def test_files_say_what_they_are():
+    assert not [str(path) for path in FILES if not described(path)]
+
+
+def test_a_file_in_the_wrong_package_would_be_found(tmp_path, monkeypatch):
+    """Each rule refuses what it is there for."""
+    monkeypatch.setitem(globals(), "SOURCE", tmp_path)
+    (tmp_path / "physics").mkdir()
+    path = tmp_path / "physics" / "law.py"
+    path.write_text("import torch\nfrom pint import Unit\nimport jax\n")
+    assert list(misplaced(path)) == ["torch", "pint"]
+    assert not described(path)
+
+
+def test_a_folder_is_read_at_a_glance():
+    counts = {path: len(list(path.glob("*.py"))) for path in SOURCE.rglob("*") if path.is_dir()}
+    assert not {str(path): count for path, count in counts.items() if count > LARGEST_FOLDER}
+
+
+def test_no_file_imports_itself_by_a_detour():
+    """Imports inside functions are imports."""
+    assert import_graph.cycles(import_graph.graph_of(SOURCE)) == []
+
+
+def test_a_detour_would_be_found(tmp_path):
+    (tmp_path / "one.py").write_text("from pack import two\n")
+    (tmp_path / "two.py").write_text("def late():\n    import pack.three\n")
+    (tmp_path / "three.py").write_text("from pack.one import name\n")
+    (tmp_path / "apart.py").write_text("import pack.one\n")
+    package_folder = tmp_path.rename(tmp_path.with_name("pack"))
+    graph = import_graph.graph_of(package_folder)
+    assert import_graph.cycles(graph) == [3]
+    assert import_graph.levels(graph) == 2
 
 
 def test_a_noun_is_abstract_or_final(nouns):

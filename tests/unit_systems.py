@@ -57,7 +57,7 @@ class UnitSystem:
             unit = unit_of(hints[field.name])
             if isinstance(value, eqx.Module):
                 changes[field.name] = self.convert(value)
-            elif unit is not None:
+            elif unit is not None and value is not None:  # None: a part that it does without
                 changes[field.name] = value * self.factor(unit)
             elif not field.metadata.get("static", False) and value is not None:
                 raise AssertionError(f"{type(noun).__name__}.{field.name} says no unit")

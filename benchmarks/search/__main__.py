@@ -5,7 +5,8 @@
         [--seeds 15] [--minutes 45] [--out benchmarks/results/search]
 
 Stopped at any time it goes on where it was. Five seeds of every method come first, cheap
-methods before dear ones, then five more. A library that is not installed is left out with a word.
+methods before expensive ones, then five more. A library that is not installed is left out
+with a word.
 """
 
 import argparse
@@ -13,7 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-from camring.interfaces.compilation_cache import keep_compiled_programs
+from camring.programs.compilation_cache import keep_compiled_programs
 
 SEEDS_TOGETHER = 5
 
@@ -70,7 +71,7 @@ def main() -> None:
 
 
 def in_turn(seeds: int, problems, names):
-    """Runs in the order of the campaign: some seeds of all that is cheap, then what is dear."""
+    """Runs in the order of the campaign: some seeds of all that is cheap, then the expensive."""
     from benchmarks.search.methods import METHODS
 
     runs = [

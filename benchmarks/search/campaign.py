@@ -59,17 +59,17 @@ class Duel:
     """One of ours beside one rival, on one problem, to one target."""
 
     rival: Entry
-    own_time: RunningTime
+    our_time: RunningTime
     rival_time: RunningTime
 
     @property
     def ratio(self) -> float:
         """Our expected evaluations over theirs, which are at least their longest run's."""
         if not self.rival_time.successes:
-            if not self.own_time.successes:
+            if not self.our_time.successes:
                 return math.nan
-            return min(self.own_time.expected / self.rival_time.longest, 1.0)
-        return self.own_time.expected / self.rival_time.expected
+            return min(self.our_time.expected / self.rival_time.longest, 1.0)
+        return self.our_time.expected / self.rival_time.expected
 
 
 class Campaign:
@@ -129,10 +129,10 @@ class Campaign:
             common = mine & {trace.seed for trace in self.runs(rival, problem)}
             if rival.is_ours or not common:
                 continue
-            own_time = self.time(own, problem, target, common)
+            our_time = self.time(own, problem, target, common)
             rival_time = self.time(rival, problem, target, common)
-            if own_time is not None and rival_time is not None:
-                found.append(Duel(rival, own_time, rival_time))
+            if our_time is not None and rival_time is not None:
+                found.append(Duel(rival, our_time, rival_time))
 
         def ease(duel: Duel) -> tuple[bool, float]:
             if duel.rival_time.successes:

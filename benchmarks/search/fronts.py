@@ -5,12 +5,13 @@
 
 NSGA-II (pymoo) evaluates its populations by `evaluate_many`, the fastest there is here, on
 all cores and at search or at final resolution, begins with the given design among Sobol's,
-and keeps the same limits drawn in by `SAFETY`. Its front is taken when it has had the
-processor time of camring's search, when it has had the time by the clock, and, at search
-resolution from the first seed, at three times the processor time. As many designs of it as
-camring's has, evenly spread, are then looked at as camring's are: at finer resolution, where
-what breaks a limit is left out. The hypervolume of each front is its share of one box about
-all of them. Kept after every run
+and keeps the same limits drawn in by `SAFETY`, those of the operating points: of a file with
+an `[envelope]` it would be asked for less than camring, so such a file is refused. Its front
+is taken when it has had the processor time of camring's search, when it has had the time by
+the clock, and, at search resolution from the first seed, at three times the processor time.
+As many designs of it as camring's has, evenly spread, are then looked at as camring's are: at
+finer resolution, where what breaks a limit is left out. The hypervolume of each front is its
+share of one box about all of them. Kept after every run
 in benchmarks/results/search/fronts.json with every design's values: stopped, it goes on
 where it was. The picture of two results is docs/pictures/fronts_MOTOR.
 """
@@ -22,14 +23,15 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from camring.interfaces.compilation_cache import keep_compiled_programs
+from camring.programs.compilation_cache import keep_compiled_programs
 
 ROOT = Path(__file__).parents[2]
 RESULTS = ROOT / "benchmarks" / "results" / "search" / "fronts.json"
 PICTURES = ROOT / "docs" / "pictures"
 POPULATION = 128
-LONGER = 3.0  # times camring's processor time, at the last look
-LOOKS = ("search", "final")
+LONGER = 3.0  # times camring's processor time, at the last resolution
+RESOLUTIONS = ("search", "final")
+TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50)  # per cent
 MARGIN = 0.1  # of the box beyond the worst corner of the best front known
 
 
@@ -49,18 +51,20 @@ class Found:
 def main() -> None:
     keep_compiled_programs()  # before JAX is imported
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--motor", type=Path, default=ROOT / "examples" / "wheel_motor.toml")
+    parser.add_argument("--motor", type=Path, default=ROOT / "examples" / "derivation_motor.toml")
     parser.add_argument("--of", default="torque_ripple,efficiency")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--points", type=int, default=50)
-    parser.add_argument("--looks", nargs="+", choices=LOOKS, default=LOOKS)
+    parser.add_argument("--resolutions", nargs="+", choices=RESOLUTIONS, default=RESOLUTIONS)
     parser.add_argument("--out", type=Path, default=RESULTS)
     asked = parser.parse_args()
 
-    from camring.interfaces.config import read_motor_file
-    from camring.interfaces.trade_off import traded_results
+    from camring.files.motor import read_motor_file
+    from camring.studies.pareto import traded_results
 
     file, names = read_motor_file(asked.motor), traded_results(asked.of)
+    if file.envelope is not None:
+        parser.error(f"{asked.motor} has an [envelope], of which NSGA-II here knows nothing")
     study = f"{asked.motor.stem}: {', '.join(names)}; {asked.points}"
     fronts = kept(asked.out).get(study, [])
     if not fronts:
@@ -69,14 +73,14 @@ def main() -> None:
     own = fronts[0]
     print(f"camring: {own.processor:.1f} s of processor time, {own.clock:.1f} s", flush=True)
     for seed in range(asked.seeds):
-        for look in asked.looks:
-            if any(each.seed == seed and look in each.name for each in fronts[1:]):
+        for resolution in asked.resolutions:
+            if any(each.seed == seed and resolution in each.name for each in fronts[1:]):
                 continue
-            fronts.extend(evolved(file, names, seed, own, look))
+            fronts.extend(evolved(file, names, seed, own, resolution))
             keep(study, fronts, asked.out)
     shares = volumes([each.losses for each in fronts])
     print(
-        "\n| front | seed | processor s | clock s | designs judged | in the front | left out "
+        "\n| front | seed | processor s | clock s | designs evaluated | in the front | left out "
         "| widest gap over mean | hypervolume |"
     )
     print("|---" * 9 + "|")
@@ -107,17 +111,17 @@ def keep(study: str, fronts: list[Found], path: Path) -> None:
 
 
 def ours(file, names, points: int) -> Found:
-    """`camring pareto`'s own search; its later looks are not counted."""
+    """`camring pareto`'s own search; its later resolutions are not counted."""
     import numpy as np
 
-    from camring.interfaces.trade_off import trade_off
-    from camring.interfaces.traded import SENSES
+    from camring.studies.objectives import SENSES
+    from camring.studies.pareto import trade_off
 
     trade_off(file, names, points=3, sample=1)  # compiles
     marks: list[tuple[float, float]] = []
 
     def say(sentence: str) -> None:
-        if sentence.startswith(("Judging", "Looking again")):
+        if sentence.startswith(("Screening", "Looking again")):
             marks.append((time.process_time(), time.monotonic()))
 
     found = trade_off(file, names, points=points, sample=1, say=say)
@@ -127,7 +131,7 @@ def ours(file, names, points: int) -> Found:
     return Found("camring", processor, clock, count, losses, len(found.dropped))
 
 
-def evolved(file, names, seed: int, own: Found, look_name: str):
+def evolved(file, names, seed: int, own: Found, resolution_name: str):
     """NSGA-II's front at camring's processor time, at its time by the clock, and later."""
     import numpy as np
     from pymoo.algorithms.moo.nsga2 import NSGA2
@@ -135,23 +139,24 @@ def evolved(file, names, seed: int, own: Found, look_name: str):
     from pymoo.core.problem import Problem
     from pymoo.problems.static import StaticProblem
 
-    from camring.interfaces.many import cores, evaluate_many
-    from camring.interfaces.record import SAFETY
-    from camring.interfaces.traded import SENSES, shares_of
-    from camring.physics.lane_cycle import LanesLook
+    from camring.evaluation.batch import cores, evaluate_many
+    from camring.evaluation.outcome import SAFETY
+    from camring.objective.point_shares import point_shares
+    from camring.physics.batch_cycle import BatchResolution
     from camring.search.sampling import initial_point
+    from camring.studies.objectives import SENSES
 
     space = file.design_space
     limits = file.goal.constraints.names()
-    look = LanesLook() if look_name == "final" else LanesLook.search()
+    resolution = BatchResolution() if resolution_name == "final" else BatchResolution.search()
 
-    def judged(points):
+    def evaluated(points):
         chunk = POPULATION // cores()
-        found = evaluate_many(space, file.system, file.goal, points, look, chunk=chunk)
+        found = evaluate_many(space, file.system, file.goal, points, resolution, chunk=chunk)
         sound = np.all(np.asarray(found.faults) == 0, axis=0)
         columns = [np.array([getattr(m, n) for m in found.metrics]) for n in names]
         losses = [
-            -SENSES[n] * np.array([shares_of(file.system, n, each) @ each for each in column.T])
+            -SENSES[n] * np.array([point_shares(file.system, n, each) @ each for each in column.T])
             for n, column in zip(names, columns, strict=True)
         ]
         constraints = np.stack([np.asarray(found.constraints[n]) for n in limits], axis=1) + SAFETY
@@ -162,7 +167,7 @@ def evolved(file, names, seed: int, own: Found, look_name: str):
     dimension = space.dimension
     first = (tuple(map(float, space.locate(file.system))),)
     design = np.array([initial_point(i, dimension, seed, first) for i in range(POPULATION)])
-    judged(design)  # compiles
+    evaluated(design)  # compiles
     problem = Problem(n_var=dimension, n_obj=len(names), n_ieq_constr=len(limits), xl=0.0, xu=1.0)
     algorithm = NSGA2(pop_size=POPULATION, sampling=design)
     algorithm.setup(problem, termination=("n_gen", 10**9), seed=seed, verbose=False)
@@ -170,13 +175,13 @@ def evolved(file, names, seed: int, own: Found, look_name: str):
         ("same processor time", own.processor, 0),
         ("same time", own.clock, 1),
         (f"{LONGER:g} times the processor time", LONGER * own.processor, 0),
-    ][: 3 if seed == 0 and look_name == "search" else 2]
+    ][: 3 if seed == 0 and resolution_name == "search" else 2]
     count, looking = 0, np.zeros(2)
     started = np.array([time.process_time(), time.monotonic()])
     fronts = []
     while goals:
         population = algorithm.ask()
-        losses, constraints = judged(population.get("X"))
+        losses, constraints = evaluated(population.get("X"))
         Evaluator().eval(StaticProblem(problem, F=losses, G=constraints), population)
         algorithm.tell(infills=population)
         count += len(population)
@@ -185,9 +190,9 @@ def evolved(file, names, seed: int, own: Found, look_name: str):
             before = np.array([time.process_time(), time.monotonic()])
             losses, dropped = looked_again(file, names, algorithm.opt, len(own.losses))
             looking += np.array([time.process_time(), time.monotonic()]) - before
-            name = f"NSGA-II, {look_name} resolution, {goal[0]}"
+            name = f"NSGA-II, {resolution_name} resolution, {goal[0]}"
             fronts.append(Found(name, *spent, count, losses, dropped, seed))
-            print(f"{name}, seed {seed}: {count} designs judged", flush=True)
+            print(f"{name}, seed {seed}: {count} designs evaluated", flush=True)
             goals.remove(goal)
     return fronts
 
@@ -196,12 +201,13 @@ def looked_again(file, names, population, count: int) -> tuple[list[list[float]]
     """Losses at finer resolution of so many designs, those that keep every limit there."""
     import numpy as np
 
-    from camring.interfaces.compiled import assess
-    from camring.interfaces.config import parse_motor_file
-    from camring.interfaces.evaluator import outcome_of
-    from camring.interfaces.traded import SENSES, shares_of
+    from camring.evaluation.assessed import outcome_of
+    from camring.files.motor import parse_motor_file
+    from camring.objective.point_shares import point_shares
     from camring.physics.resolution import Resolution
-    from camring.search.pareto import box_of, evenly_spread
+    from camring.programs.compiled import assess
+    from camring.search.pareto.dominance import box_of, evenly_spread
+    from camring.studies.objectives import SENSES
 
     feasible = np.all(population.get("FEAS").reshape(len(population), -1), axis=1)
     points, losses = population.get("X")[feasible], population.get("F")[feasible]
@@ -219,7 +225,7 @@ def looked_again(file, names, population, count: int) -> tuple[list[list[float]]
         columns = [np.array([each[n] for each in outcome.results]) for n in names]
         kept.append(
             [
-                -SENSES[n] * float(shares_of(file.system, n, column) @ column)
+                -SENSES[n] * float(point_shares(file.system, n, column) @ column)
                 for n, column in zip(names, columns, strict=True)
             ]
         )
@@ -230,7 +236,7 @@ def volumes(fronts: list[list[list[float]]]) -> list[float]:
     """Share of one box that each front dominates: from the best of all to a tenth beyond."""
     import numpy as np
 
-    from camring.search.pareto import box_of, hypervolume, non_dominated
+    from camring.search.pareto.dominance import box_of, hypervolume, non_dominated
 
     together = np.array([each for front in fronts for each in front])
     lowest, width = box_of(together[np.flatnonzero(non_dominated(together))])
@@ -247,7 +253,7 @@ def widest_gap(losses: list[list[float]]) -> float:
     """Over the mean gap, along a front of two results in widths of itself; else no number."""
     import numpy as np
 
-    from camring.search.pareto import box_of, non_dominated
+    from camring.search.pareto.dominance import box_of, non_dominated
 
     values = np.array(losses)
     if len(values) < 3 or values.shape[1] != 2:
@@ -259,12 +265,17 @@ def widest_gap(losses: list[list[float]]) -> float:
     return float(np.max(gaps) / np.mean(gaps))
 
 
+def _reach(values) -> tuple[float, float]:
+    """A little beyond all of them, in steps of a factor."""
+    return float(min(values)) / 1.15, float(max(values)) * 1.15
+
+
 def draw(fronts: list[Found], names, path: Path) -> None:
     """Writes the picture of two results as PNG: same processor time, first seed."""
     import numpy as np
     from matplotlib.figure import Figure
 
-    from camring.interfaces.traded import SENSES
+    from camring.studies.objectives import SENSES
 
     shown = [each for each in fronts if each.seed == 0 and "same time" not in each.name]
     figure = Figure(figsize=(7.5, 5))
@@ -282,8 +293,12 @@ def draw(fronts: list[Found], names, path: Path) -> None:
             zorder=len(shown) - place,
             label=front.name,
         )
+    axes.set_xscale("log")
+    axes.set_xticks(TICKS, labels=[f"{each:g}" for each in TICKS])
+    axes.set_xlim(*_reach(100 * np.abs(np.concatenate([each.losses for each in shown])[:, 0])))
+    axes.minorticks_off()
+    axes.grid(alpha=0.3)
     axes.set(
-        xscale="log",
         xlabel=f"{names[0].replace('_', ' ')}, %",
         ylabel=f"{names[1].replace('_', ' ')}, %",
     )

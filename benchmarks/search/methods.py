@@ -1,4 +1,4 @@
-"""Every method by its name, with how dear its own thinking is."""
+"""Every method by its name, with how expensive its own thinking is."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.search.problem import TOLERANCE, Outcome, Point, SearchProblem
+from benchmarks.search.problem import TOLERANCE, Point, SearchProblem, ValueAt
 from camring.search.sampling import generator, initial_point
 
 MOVED, STREAM = 0.07, 3
@@ -40,17 +40,17 @@ class Oracle:
             tuple(np.clip(point + MOVED * random.normal(size=len(point)), 0.0, 1.0).tolist())
             for point in problem.given
         )
-        self.outcomes: list[Outcome] = []
+        self.outcomes: list[ValueAt] = []
         self.slopes_before: list[int] = []
         self.evaluating, self.processor = 0.0, 0.0  # seconds in the problem, wall and processor
-        self._known: dict[bytes, Outcome] = {}
+        self._known: dict[bytes, ValueAt] = {}
         self._sloped: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}
 
     @property
     def left(self) -> int:
         return self.budget - len(self.outcomes)
 
-    def outcome(self, point: Point) -> Outcome:
+    def outcome(self, point: Point) -> ValueAt:
         """The problem's own words, failures included.
 
         Raises

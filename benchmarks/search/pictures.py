@@ -3,7 +3,6 @@
 import math
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -119,6 +118,4 @@ def _finish(figure: Figure, entries: list[Entry], path: Path) -> None:
     figure.legend(handles=handles, ncols=6, loc="lower center", frameon=False, fontsize=8)
     height = figure.get_size_inches()[1]
     figure.tight_layout(rect=(0, 0.75 / height, 1, 1))
-    with matplotlib.rc_context({"svg.hashsalt": "camring", "svg.fonttype": "none"}):
-        figure.savefig(path.with_suffix(".svg"), metadata={"Date": None})
     figure.savefig(path.with_suffix(".png"), dpi=80)

@@ -12,7 +12,7 @@ TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class ValueAt:
     """What a problem says of one point; a failure in words makes the numbers void."""
 
     objective: float
@@ -61,7 +61,7 @@ class SearchProblem:
     dimension: int
     constraint_count: int
     budget: int
-    evaluate: Callable[[Point], Outcome]
+    evaluate: Callable[[Point], ValueAt]
     slopes: Callable[[Point], tuple[np.ndarray, np.ndarray]]
     approximate: Callable[[np.ndarray], np.ndarray] | None = None
     given: tuple[tuple[float, ...], ...] = ()

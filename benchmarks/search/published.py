@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from benchmarks.search.problem import Outcome, Point, SearchProblem
+from benchmarks.search.problem import Point, SearchProblem, ValueAt
 
 jax.config.update("jax_enable_x64", True)
 BUDGET_OF_TWO, BUDGET = 100, 150  # evaluations, for two variables and for more
@@ -34,9 +34,9 @@ def _problem(
 
     values, slopes = jax.jit(at), jax.jit(jax.jacfwd(at))
 
-    def evaluate(point: Point) -> Outcome:
+    def evaluate(point: Point) -> ValueAt:
         objective, constraints = values(point)
-        return Outcome(float(objective), np.asarray(constraints))
+        return ValueAt(float(objective), np.asarray(constraints))
 
     def sloped(point: Point) -> tuple[np.ndarray, np.ndarray]:
         of_objective, of_constraints = slopes(point)

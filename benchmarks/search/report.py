@@ -4,7 +4,7 @@
 
 Prints Markdown: expected running times to 10, 1 and 0.1 % above the best known value with
 the runs that got there, how ours compare with the best rival, every case lost, what each
-method's own thinking costs. Draws docs/pictures/search_convergence and search_profiles.
+method's own thinking costs. Draws docs/pictures/search_convergence.png and search_profiles.png.
 """
 
 import argparse
@@ -44,12 +44,12 @@ def running_times(campaign: Campaign, target: float) -> str:
 def faced(duel: Duel) -> str:
     """One ratio with the rival and both expectations behind it."""
     if math.isnan(duel.ratio):
-        return f"neither ({duel.own_time.runs} seeds)"
+        return f"neither ({duel.our_time.runs} seeds)"
     if not duel.rival_time.successes:
         longest = f"no rival in {duel.rival_time.longest:.0f}"
-        return f"under {duel.ratio:.2f}: {said(duel.own_time)} : {longest}"
+        return f"under {duel.ratio:.2f}: {said(duel.our_time)} : {longest}"
     number = f"{duel.ratio:.2f}" if math.isfinite(duel.ratio) else "never"
-    behind = f"{said(duel.own_time)} : {said(duel.rival_time)} {duel.rival.name}"
+    behind = f"{said(duel.our_time)} : {said(duel.rival_time)} {duel.rival.name}"
     return f"{number}: {behind}"
 
 
@@ -163,6 +163,7 @@ def main() -> None:
     except ImportError:
         print('\nNo pictures without matplotlib: pip install "camring[plot]" brings it.')
         return
+    asked.pictures.mkdir(parents=True, exist_ok=True)
     convergence(campaign, asked.pictures / "search_convergence")
     profiles(campaign, asked.pictures / "search_profiles")
 

@@ -157,7 +157,7 @@ def _pymoo(oracle: Oracle, which: str) -> str:
 
 
 def optuna_tpe(oracle: Oracle) -> str:
-    """Optuna's tree of Parzen estimators, multivariate, told of the constraints."""
+    """Optuna's tree of Parzen estimators, multivariate, given the constraints."""
     import optuna
 
     return _optuna(
@@ -172,7 +172,7 @@ def optuna_tpe(oracle: Oracle) -> str:
 
 
 def optuna_gp(oracle: Oracle) -> str:
-    """Optuna's Gaussian process sampler, told of the constraints and that nothing is noise."""
+    """Optuna's Gaussian process sampler, given the constraints and that nothing is noise."""
     import optuna
     import torch
 

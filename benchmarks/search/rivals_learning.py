@@ -89,7 +89,7 @@ def botorch_scbo(oracle: Oracle, batch: int = 4) -> str:
             fit_gpytorch_mll(ExactMarginalLogLikelihood(model.likelihood, model))
         return model
 
-    def judged(points: np.ndarray) -> list[tuple[float, np.ndarray]]:
+    def evaluated(points: np.ndarray) -> list[tuple[float, np.ndarray]]:
         return [oracle(point) for point in points]
 
     def rank(pair: tuple[float, np.ndarray]) -> tuple[float, float]:
@@ -98,7 +98,7 @@ def botorch_scbo(oracle: Oracle, batch: int = 4) -> str:
 
     engine = SobolEngine(dimension, scramble=True, seed=oracle.seed)
     points = oracle.design(2 * dimension + 2)
-    known = judged(points)
+    known = evaluated(points)
     failures_allowed = math.ceil(max(4.0 / batch, dimension / batch))
     since, length, successes, failures = 0, 0.8, 0, 0
     lead = min(map(rank, known))
@@ -122,7 +122,7 @@ def botorch_scbo(oracle: Oracle, batch: int = 4) -> str:
             draw = MaxPosteriorSampling(model, replacement=False)
         with torch.no_grad():
             chosen = draw(candidates, num_samples=batch).numpy()
-        new = judged(chosen)
+        new = evaluated(chosen)
         points, known = np.concatenate([points, chosen]), known + new
         best = min(map(rank, new))
         better = best < (lead[0], lead[1] - 1e-3 * abs(lead[1]))
@@ -135,5 +135,5 @@ def botorch_scbo(oracle: Oracle, batch: int = 4) -> str:
         if length < 0.5**7:  # begins anew elsewhere, from points of the same Sobol sequence
             since, length, successes, failures = len(points), 0.8, 0, 0
             again = engine.draw(2 * dimension + 2, dtype=kind).numpy()
-            points, known = np.concatenate([points, again]), known + judged(again)
+            points, known = np.concatenate([points, again]), known + evaluated(again)
             lead = min(map(rank, known[since:]))

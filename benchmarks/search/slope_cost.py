@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 
-from camring.interfaces.compilation_cache import keep_compiled_programs
+from camring.programs.compilation_cache import keep_compiled_programs
 
 POINTS = 40
 

@@ -1,10 +1,12 @@
 """The directive `run`: commands and Python of a tutorial run at build and shown with what they say.
 
 `{run} sh` runs one command a line; `{run} python` runs in one namespace a page, or with
-`:script: NAME` as a program of its own; `:picture: FILE WORDS` shows a picture that was made,
-`:first: N` and `:last: N` only the first or last lines printed, `:folded: WORDS` folds the Python
-away below these words. What fails is an error of the build. All pages share one folder, so a study
-made by one page is there for the next; when one is stale all are run again. `__file__` is the page.
+`:script: NAME` as a program of its own (with `:written:` only written). `:picture: FILE WORDS` is
+a picture that was made; `:first: N` and `:last: N` only the first or last lines printed,
+`:folded: WORDS` folds the Python away below these words. What fails is an error of the build. All
+pages share one folder, so a study made by one page is there for the next; when one is stale all are
+run again. `__file__` is the page.
+`python -m sphinx -D run_pages=0 ...` shows the pages without running anything.
 """
 
 import contextlib
@@ -26,49 +28,55 @@ SPACES: dict[str, dict] = {}  # of Python names, by page
 class Run(SphinxDirective):
     has_content, required_arguments = True, 1
     option_spec = dict.fromkeys(
-        ("picture", "script", "first", "last", "folded"), directives.unchanged
+        ("picture", "script", "written", "first", "last", "folded"), directives.unchanged
     )
 
     def run(self):
-        room = _room(self.env)
+        folder = _folder(self.env)
         self.env.metadata[self.env.docname]["executed"] = "yes"
         source, script = "\n".join(self.content), self.options.get("script")
+        if not self.config.run_pages:
+            return [_block("python" if self.arguments[0] == "python" else "sh", source)]
         if self.arguments[0] == "sh":
-            shown = [_block("console", "\n".join(self.shell(line, room) for line in self.content))]
+            shown = [
+                _block("console", "\n".join(self.shell(line, folder) for line in self.content))
+            ]
         elif script:
-            (room / script).write_text(source + "\n", encoding="utf-8")
-            said = self.shell(f"python {script}", room)
+            (folder / script).write_text(source + "\n", encoding="utf-8")
+            if "written" in self.options:
+                return [_block("python", source)]
+            said = self.shell(f"python {script}", folder)
             shown = [_block("python", source), _block("console", said)]
         else:
             shown = [_block("python", source)]
             if "folded" in self.options:
                 shown = _folded(self.options["folded"], shown)
-            if said := self.python(source, room):
+            if said := self.python(source, folder):
                 shown.append(_block("text", said))
         if "picture" in self.options:
             name, _, words = self.options["picture"].partition(" ")
-            if not (room / name).exists():
+            if not (folder / name).exists():
                 raise self.error(f"no picture {name} was made")
-            inside = os.path.relpath(room / name, self.env.srcdir)
+            inside = os.path.relpath(folder / name, self.env.srcdir)
             shown.append(nodes.image(uri=f"/{inside}", alt=words))
         return shown
 
-    def shell(self, line: str, room: Path) -> str:
+    def shell(self, line: str, folder: Path) -> str:
         paths = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
         place = {"PATH": paths, "COLUMNS": "96", "NO_COLOR": "1", "MPLBACKEND": "agg"}
         done = subprocess.run(
-            line, shell=True, cwd=room, env=os.environ | place, text=True,
+            line, shell=True, cwd=folder, env=os.environ | place, text=True,
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         )  # fmt: skip
         if done.returncode:
             raise self.error(f"`{line}` ended with {done.returncode}:\n{done.stdout}")
-        return f"$ {line}\n{self.cut(done.stdout.replace(f'{room}/', ''))}"
+        return f"$ {line}\n{self.cut(done.stdout.replace(f'{folder}/', ''))}"
 
-    def python(self, source: str, room: Path) -> str:
-        from camring.interfaces.compilation_cache import keep_compiled_programs
+    def python(self, source: str, folder: Path) -> str:
+        from camring.programs.compilation_cache import keep_compiled_programs
 
         keep_compiled_programs()
-        with contextlib.chdir(room), contextlib.redirect_stdout(io.StringIO()) as said:
+        with contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()) as said:
             try:
                 page = {"__file__": self.env.doc2path(self.env.docname)}
                 exec(source, SPACES.setdefault(self.env.docname, page))
@@ -92,10 +100,10 @@ def _folded(words: str, inside: list[nodes.Node]) -> list[nodes.Node]:
     return [nodes.raw("", head, format="html"), *inside, nodes.raw("", "</details>", format="html")]
 
 
-def _room(env) -> Path:
-    room = Path(env.app.doctreedir) / "executed"
-    room.mkdir(parents=True, exist_ok=True)
-    return room
+def _folder(env) -> Path:
+    folder = Path(env.app.doctreedir) / "executed"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
 
 def _all_or_none(app, env, added, changed, removed):
@@ -103,12 +111,13 @@ def _all_or_none(app, env, added, changed, removed):
     stale = added | changed
     if pages and not pages & stale:
         return []
-    shutil.rmtree(_room(env), ignore_errors=True)
+    shutil.rmtree(_folder(env), ignore_errors=True)
     SPACES.clear()
     return sorted(pages)
 
 
 def setup(app):
+    app.add_config_value("run_pages", True, "env", types=(bool,))
     app.add_directive("run", Run)
     app.connect("env-get-outdated", _all_or_none)
     return {"parallel_read_safe": False}

@@ -14,12 +14,12 @@ from docutils.statemachine import StringList
 from pydantic import BaseModel
 from sphinx.util.docutils import SphinxDirective
 
-from camring.interfaces.config.design_cam import CamModesTable
-from camring.interfaces.config.entries import Entry, Number, Word
-from camring.interfaces.config.keys import CAMS, Choices, file_tables, inner_table
-from camring.interfaces.config.laws import SLOTS, laws_of
-from camring.interfaces.starting.library import library
-from camring.interfaces.units import from_si, split_quantity
+from camring.files.motor.design_cam import CamModesTable
+from camring.files.motor.entries import Entry, Number, Word
+from camring.files.motor.keys import CAMS, Choices, file_tables, inner_table
+from camring.files.motor.laws import SLOTS, laws_of
+from camring.files.starting.library import library
+from camring.files.units import from_si, split_quantity
 
 TYPICAL = Path(__file__).parents[1] / "typical.toml"
 
@@ -96,7 +96,8 @@ def in_library(entry: Entry, values: list[Any]) -> str:
         read = [entry.read(value) for value in values]
         text = next((value for value in values if isinstance(value, str)), "")
         unit = split_quantity(text)[1] if text else ""
-        low, high = (from_si(each, unit) if unit else each for each in (min(read), max(read)))
+        ends = min(read), max(read)
+        low, high = (from_si(each, unit, entry.unit) if unit else each for each in ends)
     span = f"{low:.3g}" if f"{low:.3g}" == f"{high:.3g}" else f"{low:.3g} to {high:.3g}"
     return f"{span} {unit}".strip()
 

@@ -35,7 +35,8 @@ def _displayed(self, node):
         self.body.append("</span>")
     else:
         self.body.append(self.starttag(node, "div", CLASS="math equation"))
-    self.body.append(_mathml(node, as_block=True) + "</div>\n")
+    # In a box of its own, which scrolls by itself where the page is narrow.
+    self.body.append(f'<div class="formula">{_mathml(node, as_block=True)}</div></div>\n')
     raise nodes.SkipNode
 
 

@@ -7,8 +7,8 @@ import re
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from camring.interfaces.config import read_motor_file
-from camring.interfaces.export import export
+from camring.exchange.drawings import export
+from camring.files.motor import read_motor_file
 
 HERE = Path(__file__).parent
 MOTOR = HERE.parent.parent / "examples" / "wheel_motor.toml"

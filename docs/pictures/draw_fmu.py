@@ -13,19 +13,19 @@ from fmpy.fmi2 import FMU2Slave
 from matplotlib.figure import Figure
 
 import camring
-from camring.interfaces.export import export
+from camring.exchange.drawings import export
 
 HERE = Path(__file__).parent
 MOTOR = HERE.parent.parent / "examples" / "wheel_motor.toml"
 STEP, STOP = 2e-4, 1.6  # s
 INERTIA = 12.0  # kg m2
-RETURN, CASE = 10e5, 2e5  # Pa
+SUPPLY, RETURN, CASE = 200e5, 15e5, 2e5  # Pa; the last two are the operating points'
 
 
 def supply_pressure(time: float) -> float:
     """Up to 200 bar in half a second, down from one second on."""
     up, down = np.clip(time / 0.5, 0, 1), np.clip((time - 1.0) / 0.3, 0, 1)
-    return RETURN + 190e5 * (up - down)
+    return RETURN + (SUPPLY - RETURN) * (up - down)
 
 
 def load(speed: float) -> float:
@@ -69,7 +69,7 @@ def figure(found: dict[str, np.ndarray]) -> Figure:
     curves = (
         (found["pressure"] / 1e5, "Supply, bar"),
         (found["speed"] * 30 / pi, "Speed, rpm"),
-        (found["torque"], "Torque, N m"),
+        (found["torque"], "Torque, N·m"),
         (found["flow"] * 6e4, "Supply flow, L/min"),
     )
     for axes, (values, label) in zip(above, curves, strict=True):

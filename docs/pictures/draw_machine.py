@@ -15,8 +15,8 @@ from matplotlib.patches import Circle, Polygon
 
 import camring
 from camring import plots
-from camring.interfaces.plots.style import sheet, styled
-from camring.interfaces.report.palette import INK, QUIET, RETURN, SUPPLY
+from camring.drawing.palette import INK, QUIET, RETURN, SUPPLY
+from camring.plots.style import sheet, styled
 
 HERE = Path(__file__).parent
 MOTOR = HERE.parent.parent / "examples" / "wheel_motor.toml"
@@ -53,7 +53,7 @@ def machine() -> Figure:
         fontsize=8.5,
     )
     right.annotate(
-        "mean", (60, mean), (59.5, mean * 0.97), ha="right", va="top", fontsize=8, color=QUIET
+        "mean", (7.5, mean), (7.5, mean * 0.985), ha="center", va="top", fontsize=8, color=QUIET
     )
     right.annotate(
         "one piston: pushes for half a lobe",

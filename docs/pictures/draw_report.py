@@ -16,7 +16,7 @@ from PIL import Image, ImageChops
 
 HERE = Path(__file__).parent
 CHROMIUM = os.environ.get("CHROMIUM", "chromium")
-WIDTH, ROOM, MARGIN = 1160, 2600, 12
+WIDTH, HEIGHT, MARGIN = 1160, 2600, 12
 SHOWN = {
     "head": ("header", "nav", "#machine"),
     "limits": ("#limits",),
@@ -48,7 +48,7 @@ def photographed(page: Path, picture: Path) -> Image.Image:
         [
             CHROMIUM,
             *options,
-            f"--window-size={WIDTH},{ROOM}",
+            f"--window-size={WIDTH},{HEIGHT}",
             f"--screenshot={picture}",
             page.as_uri(),
         ],

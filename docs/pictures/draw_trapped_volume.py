@@ -11,10 +11,10 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from camring.interfaces.config import read_motor_file
-from camring.physics.cycle import simulate
-from camring.physics.fluid import ConstantFluid
+from camring.files.motor import read_motor_file
+from camring.physics.heat.simulation import simulate
 from camring.physics.motor import Motor
+from camring.physics.oil.fluid import ConstantFluid
 from camring.physics.waveforms import waveforms
 
 HERE = Path(__file__).parent

@@ -1,4 +1,4 @@
-"""The aerated oil against quadrature, its own limits, and the second road."""
+"""The aerated oil against quadrature, its own limits, and the second solver."""
 
 from itertools import pairwise
 
@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from camring.metrics.independent.laws import OilLaw
-from camring.metrics.independent.machine import Oil
-from camring.physics.aerated_fluid import AeratedFluid
-from camring.physics.fluid import ConstantFluid
+from camring.physics.oil.aerated_fluid import AeratedFluid
+from camring.physics.oil.fluid import ConstantFluid
+from camring.reference.laws import OilLaw
+from camring.reference.parts import Oil
 
 P0 = 101325.0
 PRESSURES = np.array([200.0, 2e3, 5e4, P0, 3e5, 1e6, 2.9e6, 3.1e6, 1e7, 4e8])
@@ -38,12 +38,14 @@ def independent(fluid):
 
 
 @pytest.mark.parametrize("fluid", OILS)
-def test_density_and_stiffness_are_those_of_the_second_road(fluid):
-    road = independent(fluid)
+def test_density_and_stiffness_are_those_of_the_second_solver(fluid):
+    second = independent(fluid)
     at = fluid.at(jnp.asarray(PRESSURES))
     for k, pressure in enumerate(PRESSURES):
-        assert float(at.density[k]) == pytest.approx(road.density(pressure), rel=1e-12)
-        assert float(at.content_slope[k]) == pytest.approx(road.density_slope(pressure), rel=1e-12)
+        assert float(at.density[k]) == pytest.approx(second.density(pressure), rel=1e-12)
+        assert float(at.content_slope[k]) == pytest.approx(
+            second.density_slope(pressure), rel=1e-12
+        )
 
 
 @pytest.mark.parametrize("fluid", OILS)
@@ -56,14 +58,14 @@ def test_the_slope_is_the_derivative_of_the_density(fluid):
 
 @pytest.mark.parametrize("fluid", OILS)
 def test_the_potential_is_the_integral_of_volume_over_pressure(fluid):
-    road = independent(fluid)
+    second = independent(fluid)
     corners = sorted({P0, float(fluid.dissolution_pressure)})
     for pressure in PRESSURES:
         inside = [p for p in corners if min(P0, pressure) < p < max(P0, pressure)]
         ends = [P0, *(inside if pressure > P0 else inside[::-1]), pressure]
         expected = sum(
             quad(
-                lambda u: np.exp(u) / road.density(np.exp(u)),
+                lambda u: np.exp(u) / second.density(np.exp(u)),
                 np.log(a),
                 np.log(b),
                 epsabs=0,

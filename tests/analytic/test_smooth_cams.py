@@ -1,4 +1,4 @@
-"""What is known exactly about smooth cams (model.md section 11)."""
+"""What is known exactly about smooth cams (docs/theory.md section 11)."""
 
 from math import gcd, pi, sqrt, tan
 
@@ -36,10 +36,10 @@ def test_a_box_of_whole_piston_phases_under_any_kernel_has_no_geometric_ripple(
     rng = np.random.default_rng(seed)
     phases = pistons // gcd(pistons, lobes)
     count = 2 * phases * 5
-    room = count // 2 - (degree - 1)
-    rising = int(rng.integers(1, max(room * phases // count, 1) + 1))
+    space = count // 2 - (degree - 1)
+    rising = int(rng.integers(1, max(space * phases // count, 1) + 1))
     width = rising * count // phases
-    kernel = rng.uniform(0, 1, size=int(rng.integers(1, room - width + 2))) + 0.01
+    kernel = rng.uniform(0, 1, size=int(rng.integers(1, space - width + 2))) + 0.01
     cam = RadialCam(
         zero_ripple_control(phases, count, rising, kernel), repeats=lobes, degree=degree
     )
@@ -69,7 +69,7 @@ def test_geometric_ripple_is_what_the_lobe_harmonics_of_the_rising_slope_say(pis
 
 @pytest.mark.parametrize(("pistons", "lobes", "waves"), [(8, 6, 4), (10, 8, 10), (10, 4, 10)])
 def test_a_sine_cam_ripples_as_the_rectified_sine_says(pistons, lobes, waves):
-    """K = q for even q, 2q for odd; the two decimals are those of model.md."""
+    """K = q for even q, 2q for odd; the two decimals are those of docs/theory.md."""
     count = 128
     control = 0.2 - 0.01 * np.cos(2 * pi * np.arange(count) / count)
     cam = RadialCam(control, repeats=lobes, degree=5)

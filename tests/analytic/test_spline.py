@@ -15,7 +15,7 @@ SEEDS = range(6)
 
 
 def scipy_periodic(control, period, degree, angle, derivative):
-    """The definition in model.md section 2, through SciPy's recursion."""
+    """The definition in docs/theory.md section 2, through SciPy's recursion."""
     count, spacing = len(control), period / len(control)
     total = np.zeros_like(angle)
     for j in range(count):

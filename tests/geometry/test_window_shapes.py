@@ -4,9 +4,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from detailed_motors import lens_area_by_quadrature
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from second_rung import lens_area_by_quadrature
 
 from camring.geometry.notch import ReliefNotch
 from camring.geometry.window import (
@@ -16,8 +16,8 @@ from camring.geometry.window import (
     lens_overlap,
     lens_share,
 )
-from camring.metrics.independent.laws import opening, opening_kinks
-from camring.metrics.independent.machine import Window
+from camring.reference.laws import opening, opening_kinks
+from camring.reference.parts import Window
 
 WIDTH = 0.4
 SHAPES = (
@@ -45,7 +45,7 @@ def test_the_lens_has_a_finite_slope_even_where_the_circles_touch(overlap):
     assert slope == pytest.approx(4 / np.pi * np.sqrt(overlap * (2 - overlap)), rel=1e-12)
 
 
-def second_road(window, notch=None):
+def second_solver(window, notch=None):
     shape = {"LinearWindow": "linear", "RoundWindow": "round"}.get(type(window).__name__, "table")
     table = ((), ())
     if shape == "table":
@@ -57,13 +57,13 @@ def second_road(window, notch=None):
 
 @pytest.mark.parametrize("window", SHAPES)
 @pytest.mark.parametrize("notch", [None, ReliefNotch(0.05, 0.03), ReliefNotch(0.01, 0.4)])
-def test_openings_are_those_of_the_second_road(window, notch):
+def test_openings_are_those_of_the_second_solver(window, notch):
     distance = np.linspace(-0.35, 0.35, 2001)
     if notch is None:
         found = window.opening(jnp.asarray(distance), WIDTH)
     else:
         found = notch.opening(window, jnp.asarray(distance), WIDTH)
-    expected = [opening(second_road(window, notch))(d) for d in distance]
+    expected = [opening(second_solver(window, notch))(d) for d in distance]
     np.testing.assert_allclose(found, expected, atol=1e-12)
     assert float(jnp.min(found)) >= 0
     assert float(jnp.max(found)) == 1
@@ -73,7 +73,7 @@ def test_openings_are_those_of_the_second_road(window, notch):
 @pytest.mark.parametrize("notch", [ReliefNotch(0.05, 0.03), ReliefNotch(0.01, 0.4)])
 def test_every_kink_of_a_notched_window_is_an_edge(window, notch):
     edges = np.asarray(notch.edges(window, WIDTH))
-    for kink in opening_kinks(second_road(window, notch)):
+    for kink in opening_kinks(second_solver(window, notch)):
         assert np.min(np.abs(edges - kink)) < 1e-9, kink
 
 

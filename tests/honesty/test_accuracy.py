@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from both_roads import (
+from both_solvers import (
     independent_awkward,
     independent_sound,
     plain_errors,

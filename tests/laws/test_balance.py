@@ -1,4 +1,4 @@
-"""Nothing gets lost: power, oil, torque by two roads, the beat of the pistons."""
+"""Nothing gets lost: power, oil, torque in two ways, the beat of the pistons."""
 
 from math import gcd, pi
 
@@ -7,13 +7,14 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from both_roads import run_all, single
+from both_solvers import run_all, single
 from motors import STRUCTURES, sound_case
 
 from camring.metrics.power_balance import power_balance
-from camring.metrics.spectrum import quadrature_samples
+from camring.physics.piston_state import quadrature_samples
 from camring.physics.torque import torque_by_contact, torque_by_virtual_work
 from camring.physics.waveforms import shaft_torque, waveforms
+from camring.reference import machine_of, solve_machine
 
 COUNT = 8  # motors in the batch that every test below looks at
 
@@ -41,6 +42,8 @@ def test_hydraulic_power_in_is_shaft_power_and_every_named_loss(metrics):
     np.testing.assert_allclose(metrics.input_power, explained, rtol=2e-6)
     left = (metrics.input_power - explained) / metrics.input_power
     np.testing.assert_allclose(metrics.power_residual, left, atol=1e-12)
+    left_over = metrics.output_power / metrics.input_power
+    np.testing.assert_allclose(metrics.energy_efficiency, left_over, rtol=1e-14)
 
 
 def test_throttling_and_friction_only_ever_cost_power(metrics):
@@ -52,8 +55,39 @@ def test_the_product_of_part_efficiencies_is_the_whole(metrics):
     np.testing.assert_allclose(
         metrics.volumetric_efficiency * metrics.hydromechanical_efficiency,
         metrics.efficiency,
-        rtol=1e-9,
+        rtol=1e-12,
     )
+
+
+def test_by_volume_a_bench_reads_the_balance_of_energy_itself(metrics):
+    np.testing.assert_allclose(metrics.efficiency, metrics.energy_efficiency, rtol=1e-12)
+    assert np.all(metrics.duty == "motor")
+
+
+def test_with_return_above_supply_it_is_a_pump_with_a_pumps_efficiencies(cases):
+    """Oil comes out at the higher pressure; less than the shaft puts in, at every end."""
+    reversed_drop = [
+        case.changed(
+            lambda c: (c.point.supply_pressure, c.point.return_pressure, c.point.case_pressure),
+            (case.point.return_pressure, case.point.supply_pressure, case.point.return_pressure),
+        )
+        for case in cases
+    ]
+    _, found = run_all(reversed_drop)
+    assert np.all(found.duty == "pump")
+    shaft, oil = -np.asarray(found.output_power), -np.asarray(found.input_power)
+    np.testing.assert_allclose(found.energy_efficiency, oil / shaft, rtol=1e-12)
+    assert np.all((oil > 0) & (oil < shaft))
+    np.testing.assert_allclose(
+        found.hydromechanical_efficiency, found.ideal_torque / found.mean_torque, rtol=1e-12
+    )
+    np.testing.assert_allclose(
+        found.volumetric_efficiency * found.hydromechanical_efficiency, oil / shaft, rtol=1e-12
+    )
+    machine = machine_of(*reversed_drop[0])
+    other = solve_machine(machine, tolerance=1e-8).results
+    for name in ("efficiency", "volumetric_efficiency", "energy_efficiency"):
+        assert other[name] == pytest.approx(float(getattr(found, name)[0]), rel=1e-5), name
 
 
 def test_oil_in_is_oil_out_and_leakage_and_compression(cycles):

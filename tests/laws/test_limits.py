@@ -4,7 +4,7 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
-from both_roads import run_all
+from both_solvers import run_all
 from motors import STRUCTURES, sound_case
 
 from camring.physics.linearised import LinearChamber, torque_harmonics

@@ -34,11 +34,11 @@ def test_the_mirror_image_obeys_the_mirrored_equation_at_the_opposite_speed(kind
     angle = np.linspace(-2, 5, 301)  # meets no knot, where jerk has two sides
     pressure = np.random.default_rng(1).uniform(0, 3e7, angle.shape)
     sides = []
-    for one, duty, sign in ((motor, backwards, 1.0), (mirrored(motor), point, -1.0)):
+    for one, reverse, sign in ((motor, backwards, 1.0), (mirrored(motor), point, -1.0)):
         radius = one.cam.pitch_radius(sign * angle)
         chamber = chamber_at(one, 0.1, sign * angle, radius)
-        slope = pressure_slope(one, fluid, duty, chamber, pressure)
-        force = radial_force(one.piston, pressure, 1e5, radius, duty.shaft_speed, 12.0)
+        slope = pressure_slope(one, fluid, reverse, chamber, pressure)
+        force = radial_force(one.piston, pressure, 1e5, radius, reverse.shaft_speed, 12.0)
         even = [radius.value, radius.second, chamber.supply_area, chamber.return_area, force]
         odd = [radius.first, slope, force * radius.first]
         sides.append([np.asarray(x) for x in even] + [sign * np.asarray(x) for x in odd])

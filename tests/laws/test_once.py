@@ -19,10 +19,10 @@ def test_every_number_passes_whatever_the_first_one_is(first):
     assert found[2] is None
 
 
-def test_one_lost_lane_leaves_the_others_alone():
-    lanes = jnp.stack([jnp.full(4, np.nan), jnp.arange(4.0)])
+def test_one_lost_member_leaves_the_others_alone():
+    members = jnp.stack([jnp.full(4, np.nan), jnp.arange(4.0)])
     np.testing.assert_array_equal(
-        jax.vmap(lambda lane: computed_once(jnp.sin(lane)))(lanes)[1:], jnp.sin(lanes[1:])
+        jax.vmap(lambda member: computed_once(jnp.sin(member)))(members)[1:], jnp.sin(members[1:])
     )
 
 

@@ -11,18 +11,18 @@ from scipy.integrate import solve_ivp
 
 from camring.geometry.notch import ReliefNotch
 from camring.geometry.window import TabulatedWindow
-from camring.interfaces.compiled import simulate, summarise
-from camring.metrics.independent import OrbitError, independent_results
-from camring.metrics.independent.machine import machine_of
 from camring.physics.chamber import chamber_at
 from camring.physics.mirror import mirrored
 from camring.physics.motor import Motor
 from camring.physics.pressure import pressure_slope
 from camring.physics.rotation import turned
+from camring.programs.compiled import simulate, summarise
+from camring.reference import OrbitError, independent_results
+from camring.reference.machine import machine_of
 
 STRUCTURE = STRUCTURES[0]
 LOPSIDED = TabulatedWindow(np.array([-1.0, -0.5, 0.6, 1.0]), np.array([0.0, 0.9, 1.0, 0.0]))
-JUDGED = (
+COMPARED = (
     "mean_torque",
     "torque_ripple",
     "pressure_ripple",
@@ -72,24 +72,24 @@ def test_a_symmetric_motor_does_not_care_which_way_it_turns(lopsided):
         ((radii + np.roll(radii[::-1], 1)) / 2, 0.0, lopsided.motor.valve_plate.supply.width),
     )
     one, other = results(symmetric), results(backwards(symmetric))
-    for name in JUDGED:
+    for name in COMPARED:
         assert other[name] == pytest.approx(one[name], rel=1e-7), name
 
 
 def test_the_motor_seen_from_behind_turned_backwards_is_the_motor_forwards(lopsided):
     behind = Case(exchanged(mirrored(lopsided.motor)), lopsided.fluid, lopsided.point)
     one, other = results(lopsided), results(backwards(behind))
-    for name in JUDGED:
+    for name in COMPARED:
         assert other[name] == pytest.approx(one[name], rel=1e-9), name
     assert abs(results(backwards(lopsided))["torque_ripple"] / one["torque_ripple"] - 1) > 1e-3
 
 
-def test_the_power_balance_closes_backwards_and_the_second_road_agrees(lopsided):
+def test_the_power_balance_closes_backwards_and_the_second_solver_agrees(lopsided):
     case = backwards(lopsided)
     found = results(case)
     assert abs(found["power_residual"]) < 1e-6
     expected = independent_results(*case, tolerance=1e-9)
-    for name in JUDGED:
+    for name in COMPARED:
         assert found[name] == pytest.approx(expected[name], rel=2e-5), name
 
 
@@ -98,14 +98,14 @@ def test_integration_in_time_of_the_motor_as_it_stands_finds_the_same_pressure(l
     motor, fluid, point = lopsided
     cycle = simulate(*backwards(lopsided))
     reference = float(cycle.reference_radius)
-    duty = eqx.tree_at(lambda p: p.shaft_speed, point, -point.shaft_speed)
+    reverse = eqx.tree_at(lambda p: p.shaft_speed, point, -point.shaft_speed)
     fed = exchanged(motor)
 
     @jax.jit
     def rate(psi, pressure):
         angle = -psi
         chamber = chamber_at(fed, reference, angle, fed.cam.pitch_radius(angle))
-        return -pressure_slope(fed, fluid, duty, chamber, pressure)
+        return -pressure_slope(fed, fluid, reverse, chamber, pressure)
 
     period = motor.cam.period
     found = solve_ivp(
@@ -137,7 +137,7 @@ def test_turning_twice_changes_nothing_more(lopsided):
 
 
 @pytest.mark.parametrize("structure", STRUCTURES, ids=lambda each: each.kind)
-def test_both_roads_see_the_same_machine_from_behind(structure):
+def test_both_solvers_see_the_same_machine_from_behind(structure):
     """Each by its own arithmetic, for rings and planar cams and lopsided windows too."""
     case = sound_case(5, structure)
     motor = eqx.tree_at(lambda m: m.valve_plate.window, case.motor, LOPSIDED)

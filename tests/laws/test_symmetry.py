@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 import pytest
-from both_roads import RESULTS, run_all, single, waveforms_of
+from both_solvers import RESULTS, run_all, single, waveforms_of
 from motors import STRUCTURES, sound_case
 
 from camring.geometry.contour import undercut_factor

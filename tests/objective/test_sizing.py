@@ -6,6 +6,17 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from camring.files.starting import sizing_rules as rules
+from camring.files.starting.sizing import (
+    Demand,
+    candidates,
+    combinations,
+    conditions_of,
+    displacements,
+    shortfalls,
+    shut_angle,
+    sized,
+)
 from camring.geometry.block import guided_length, meeting_radius, wall_between
 from camring.geometry.cam import RadialCam
 from camring.geometry.contour import pressure_angle, undercut_factor
@@ -17,20 +28,9 @@ from camring.metrics.estimate import (
     pressure_leaked_away,
     sine_torque_ripple,
 )
-from camring.objective import sizing_rules as rules
-from camring.objective.sizing import (
-    Demand,
-    candidates,
-    combinations,
-    displacements,
-    duty_of,
-    shortfalls,
-    shut_angle,
-    sized,
-)
 
 RPM = pi / 30
-ORDINARY = Demand(2.5e-3, 250e5, 100 * RPM, 0.25)
+ORDINARY = Demand(2.5e-3, 250e5, 100 * RPM, 0.5)
 
 
 @pytest.fixture(scope="module")
@@ -75,17 +75,17 @@ class TestClosedForms:
         assert sine_torque_ripple(phases) == pytest.approx(one_sided, rel=1e-3)
 
     def test_pre_compression_presses_the_dead_volume(self, ordinary):
-        duty = duty_of(ORDINARY, ordinary.return_pressure)
+        conditions = conditions_of(ORDINARY, ordinary.return_pressure)
         sketch = ordinary.sketch
-        turned = pre_compression(sketch, duty) * sketch.lobes
+        turned = pre_compression(sketch, conditions) * sketch.lobes
         travel = sketch.stroke / 2 * (1 - np.cos(turned))
-        gained = duty.bulk_modulus * sketch.area * travel / sketch.dead_volume
-        np.testing.assert_allclose(gained, duty.drop, rtol=1e-9)
+        gained = conditions.bulk_modulus * sketch.area * travel / sketch.dead_volume
+        np.testing.assert_allclose(gained, conditions.drop, rtol=1e-9)
 
     def test_half_the_speed_leaks_twice_as_much(self, ordinary):
-        duty = duty_of(ORDINARY, ordinary.return_pressure)
-        slow = duty._replace(shaft_speed=duty.shaft_speed / 2)
-        lost = pressure_leaked_away(ordinary.sketch, duty, 0.01)
+        conditions = conditions_of(ORDINARY, ordinary.return_pressure)
+        slow = conditions._replace(shaft_speed=conditions.shaft_speed / 2)
+        lost = pressure_leaked_away(ordinary.sketch, conditions, 0.01)
         assert np.all(lost > 0)
         np.testing.assert_allclose(
             pressure_leaked_away(ordinary.sketch, slow, 0.01), 2 * lost, rtol=1e-12
@@ -123,12 +123,12 @@ class TestSizes:
         assert large.contact_stress[0] == pytest.approx(small.contact_stress[0], rel=0.05)
         assert large.outer_radius[0] == pytest.approx(2 * small.outer_radius[0], rel=0.05)
 
-    def test_an_envelope_too_small_leaves_none_and_a_larger_one_never_fewer(self):
-        found = [len(sized(Demand(2.5e-3, 250e5, 10.0, room))) for room in (0.1, 0.2, 0.25, 0.5)]
+    def test_an_outer_diameter_too_small_leaves_none_and_a_larger_one_never_fewer(self):
+        found = [len(sized(Demand(2.5e-3, 250e5, 10.0, outer))) for outer in (0.2, 0.4, 0.5, 1.0)]
         assert found[0] == 0
         assert found == sorted(found)
 
-    def test_beyond_the_range_of_bores_there_is_nothing_to_look_at(self):
+    def test_beyond_the_range_of_bores_there_is_nothing_to_size(self):
         low, high = displacements()
         assert len(candidates(Demand(0.99 * low, 250e5, 10.0))) == 0
         assert len(candidates(Demand(1.01 * high, 250e5, 1.0))) == 0
@@ -136,11 +136,11 @@ class TestSizes:
 
     def test_slow_motors_are_shut_for_less(self, ordinary):
         one = type(ordinary.sketch)(*(each[0] for each in ordinary.sketch))
-        duty = duty_of(ORDINARY, ordinary.return_pressure[0])
-        full = float(pre_compression(one, duty))
-        fast = duty._replace(shaft_speed=duty.shaft_speed * 10)
+        conditions = conditions_of(ORDINARY, ordinary.return_pressure[0])
+        full = float(pre_compression(one, conditions))
+        fast = conditions._replace(shaft_speed=conditions.shaft_speed * 10)
         assert shut_angle(one, fast) == pytest.approx(rules.SHUT_SHARE * full)
-        slow = duty._replace(shaft_speed=duty.shaft_speed / 100)
+        slow = conditions._replace(shaft_speed=conditions.shaft_speed / 100)
         left = shut_angle(one, slow)
         assert 0 < left < rules.SHUT_SHARE * full
         lost = pressure_leaked_away(

@@ -5,18 +5,18 @@ import dataclasses
 import equinox as eqx
 import numpy as np
 import pytest
-from second_rung import second_rung_case
+from detailed_motors import detailed_case
+from motor_files import SOUND
 
-from camring.interfaces.compiled import assess, slopes, solve
-from camring.interfaces.config import parse_motor_file
-from camring.interfaces.config.template import template
+from camring.files.motor import parse_motor_file
 from camring.objective.design_space import DesignSpace, Variable
-from camring.objective.objective import Goal, judge
+from camring.objective.objective import Goal, assessment_of
 from camring.objective.slopes import results_used
 from camring.physics.system import System
+from camring.programs.compiled import assess, slopes, solve
 
 STEP = 2e-3  # of the unit box
-LEAST_SCALE = 0.1  # constraints are counted in their limits; a slope of nil is judged by this
+LEAST_SCALE = 0.1  # constraints are counted in their limits; a slope of nil is compared with this
 OF_PRESSURE = ("min_pressure", "max_pressure", "min_contact_force", "max_contact_stress")
 """Their differences are noisy: each simulation lays its mesh anew."""
 apply = eqx.filter_jit(DesignSpace.apply)
@@ -52,7 +52,7 @@ def differences(space, system, goal, point, first_step=STEP):
 
 
 def test_at_random_designs_of_a_motor_file():
-    motor_file = parse_motor_file(template("sine"))
+    motor_file = parse_motor_file(SOUND)
     space, system, goal = motor_file.design_space, motor_file.system, motor_file.goal
     names = ("objective", *goal.constraints.names())
     allowed = np.array([1e-4 if name in OF_PRESSURE else 1e-6 for name in names])[:, None]
@@ -72,7 +72,7 @@ def test_at_random_designs_of_a_motor_file():
 
 def test_along_random_directions_at_many_designs():
     """The same at more designs for the same time; `benchmarks/gradient_check.py` looks at 300."""
-    motor_file = parse_motor_file(template("sine"))
+    motor_file = parse_motor_file(SOUND)
     space, system, goal = motor_file.design_space, motor_file.system, motor_file.goal
     random = np.random.default_rng(5)
 
@@ -103,8 +103,8 @@ def test_along_random_directions_at_many_designs():
 
 @pytest.mark.slow
 def test_with_air_notches_and_gaps():
-    """Numbers that only the second rung has as variables; a manifold's are in tests/laws."""
-    case = second_rung_case(0)
+    """Numbers that only the detailed laws has as variables; a manifold's are in tests/laws."""
+    case = detailed_case(0)
     system = System(case.motor, case.fluid, (case.point,))
     paths = (
         "motor.valve_plate.notch.area",
@@ -126,7 +126,7 @@ def test_with_air_notches_and_gaps():
 
 def test_what_the_goal_uses_is_what_it_is_made_of():
     """Every other result may be anything: the judgement does not change."""
-    motor_file = parse_motor_file(template("sine"))
+    motor_file = parse_motor_file(SOUND)
     system, goal = motor_file.system, motor_file.goal
     found = assess(system, goal)
     used = results_used(goal)
@@ -136,7 +136,7 @@ def test_what_the_goal_uses_is_what_it_is_made_of():
         )
         for each in found.metrics
     )
-    again = judge(system, goal, spoiled, found.faults)
+    again = assessment_of(system, goal, spoiled, found.faults)
     assert float(again.objective) == pytest.approx(float(found.objective), rel=1e-12)
     for name, value in found.constraints.items():
         assert float(again.constraints[name]) == pytest.approx(float(value), rel=1e-12)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from motor_files import SOUND, ring
 
-from camring.interfaces.config import parse_motor_file
+from camring.files.motor import parse_motor_file
 from camring.objective.design_space import leaf
 from camring.objective.tolerances import Deviation, ToleratedSpace, Waviness
 

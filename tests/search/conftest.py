@@ -42,6 +42,12 @@ def branin():
 
 
 @pytest.fixture(scope="session")
+def branin_found(branin):
+    """One search that several tests look at."""
+    return minimise(branin, Bayesian(branin.dimension, convergence=None), budget=40, seed=0)
+
+
+@pytest.fixture(scope="session")
 def hartmann6():
     """Minimum -3.32237. Dixon and Szego (1978)."""
     weights = np.array([1.0, 1.2, 3.0, 3.2])
@@ -167,6 +173,6 @@ def thin_slab_minimum():
 
 @pytest.fixture(scope="session")
 def thin_slab_found(thin_slab):
-    """One search that several tests look at."""
+    """One search that several tests of the long run look at."""
     strategy = Bayesian(thin_slab.dimension, convergence=None)
     return minimise(thin_slab, strategy, budget=220, seed=0)

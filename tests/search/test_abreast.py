@@ -5,7 +5,7 @@ import threading
 import numpy as np
 import pytest
 
-from camring.search.abreast import walk_abreast
+from camring.search.parallel_searches import walk_abreast
 
 
 def squares(points):

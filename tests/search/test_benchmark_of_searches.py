@@ -10,7 +10,7 @@ from benchmarks.search.campaign import Campaign
 from benchmarks.search.measures import best_so_far, quartiles, reached_after, running_time
 from benchmarks.search.methods import METHODS
 from benchmarks.search.oracle import Oracle, Reached, Spent
-from benchmarks.search.problem import Outcome, SearchProblem
+from benchmarks.search.problem import SearchProblem, ValueAt
 from benchmarks.search.published import PUBLISHED
 from benchmarks.search.traces import Trace, keep, kept, pack, rounded_up, trace_of
 
@@ -41,7 +41,7 @@ def parabola(best=-math.inf):
         2,
         0,
         5,
-        lambda point: Outcome(float(np.sum((point - 0.5) ** 2)), np.zeros(0)),
+        lambda point: ValueAt(float(np.sum((point - 0.5) ** 2)), np.zeros(0)),
         lambda point: (2 * (point - 0.5), np.zeros((0, 2))),
         best=best,
     )

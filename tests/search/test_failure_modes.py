@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from camring.search.bayesian import Bayesian
-from camring.search.dataset import collect
-from camring.search.gaussian_process import condition
-from camring.search.learning import learn, objective_rows
 from camring.search.minimise import minimise
 from camring.search.problem import Evaluation, Problem, Proposal
-from camring.search.residual_mean import ResidualMean
+from camring.search.surrogate.dataset import collect
+from camring.search.surrogate.gaussian_process import condition
+from camring.search.surrogate.hyper_parameters import learn, objective_rows
+from camring.search.surrogate.residual_mean import ResidualMean
 
 
 def problem(objective, dimension=2, constraints=None, count=0):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from camring.search.gaps import between_ends, neighbours, spacing
+from camring.search.pareto.gaps import between_ends, neighbours, spacing
 
 
 def test_neighbours_in_a_row_whatever_their_order():

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from camring.search.gaussian_process import (
+from camring.search.surrogate.gaussian_process import (
     Hyperparameters,
     Observations,
     capacity_for,
@@ -15,7 +15,12 @@ from camring.search.gaussian_process import (
     pad,
     predict,
 )
-from camring.search.likelihood import cost_and_gradient, fit, log_likelihood, standard_starts
+from camring.search.surrogate.likelihood import (
+    cost_and_gradient,
+    fit,
+    log_likelihood,
+    standard_starts,
+)
 
 condition = jax.jit(condition)
 predict = jax.jit(predict)

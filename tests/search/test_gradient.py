@@ -53,6 +53,7 @@ def test_several_starts_find_the_best_of_several_minima(townsend):
     assert np.sum(np.array(best) < -2.0239) >= 9
 
 
+@pytest.mark.long
 def test_a_tenth_of_the_evaluations_that_no_slopes_need(thin_slab, thin_slab_found):
     """To the objective at which the Bayesian search of 220 evaluations ends."""
     target = thin_slab_found.best.objective
@@ -74,9 +75,22 @@ def test_any_trial_is_proposed_again_with_the_same_bits(townsend):
     assert len({one.phase for one in found.history}) > 3
     for cut in range(len(found.history)):
         memory = json.loads(memories[cut - 1]) if cut else {}
-        again = strategy.propose(found.history[:cut], memory, 3)
-        assert again.point.tobytes() == found.history[cut].point.tobytes(), cut
-        assert json.dumps(again.memory) == memories[cut], cut
+        begun_anew = GradientSearch(2, slopes_of(townsend), given=((0.5, 0.5),))
+        for each in (strategy, begun_anew):  # the one goes on where it waits, the other replays
+            again = each.propose(found.history[:cut], memory, 3)
+            assert again.point.tobytes() == found.history[cut].point.tobytes(), cut
+            assert json.dumps(again.memory) == memories[cut], cut
+
+
+def test_a_descent_under_way_asks_for_no_gradient_twice(townsend):
+    asked = []
+
+    def slopes(point):
+        asked.append(point.tobytes())
+        return slopes_of(townsend)(point)
+
+    found = minimise(townsend, GradientSearch(2, slopes), 30, seed=3)
+    assert len(asked) < 2 * len(found.history)  # objective and limits each ask
 
 
 def parabola(failing=lambda point: False, limit=None):

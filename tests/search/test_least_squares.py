@@ -1,11 +1,11 @@
-"""Least squares: exact answers, intervals that hold what they promise, numbers not told apart."""
+"""Least squares: exact answers, intervals that hold what they promise, what they leave open."""
 
 import numpy as np
 import pytest
 from scipy.stats import linregress
 from scipy.stats import t as student
 
-from camring.search.confidence import confidence, drift, told
+from camring.search.confidence import confidence, determined, drift
 from camring.search.least_squares import fit_squares
 
 X = np.linspace(0.0, 1.0, 12)
@@ -62,8 +62,7 @@ def test_the_interval_holds_the_true_number_in_95_of_100_cases(known):
     share, chance = held / trials, np.sqrt(0.95 * 0.05 / trials)
     print(f"known deviations {known}: {share}")
     assert np.all(share > 0.95 - 3 * chance)
-    # Known ones are enlarged where residuals exceed them, never made smaller.
-    assert known or np.all(share < 0.95 + 3 * chance)
+    assert np.all(share < 0.95 + 3 * chance)
 
 
 def test_it_also_does_with_deviations_found_from_the_residuals_of_unlike_results():
@@ -104,6 +103,36 @@ def test_known_deviations_that_are_too_small_are_enlarged():
     np.testing.assert_array_equal(small.half_width, own.half_width)
 
 
+def test_two_values_of_known_deviation_have_the_interval_of_their_mean():
+    """A normal's, as their weights are known: 1.96 of s over root two, not Student's 12.7."""
+    residuals, slopes = np.array([0.6, -0.6]), np.ones((2, 1)) / 0.3
+    found = confidence(residuals, slopes, known=True)
+    np.testing.assert_allclose(found.half_width, 1.959963985 * 0.3 / np.sqrt(2), rtol=1e-9)
+    unknown = confidence(residuals, slopes)
+    np.testing.assert_allclose(unknown.half_width, 12.7062047 * 0.6 * np.sqrt(2) * 0.3 / np.sqrt(2))
+
+
+def test_deviations_known_of_one_result_stay_where_another_has_none():
+    """Equal weights: the residuals of the values without one do not shrink the others'."""
+    slopes = np.ones((8, 1))
+    residuals = np.array([0.1, -0.1, 0.1, -0.1, 1.1, -1.1, 1.1, -1.1])
+    found = confidence(residuals, slopes, known=np.arange(8) < 4)
+    np.testing.assert_allclose(found.standard_error, 1 / np.sqrt(8), rtol=1e-12)
+
+
+def test_residuals_follow_nothing_that_has_one_value_and_ties_have_no_order():
+    residuals, chance = np.sin(np.linspace(0, 6, 40)), np.random.default_rng(5)
+    assert drift(residuals) > 3  # in the order in which they were taken
+    assert drift(residuals, np.full(40, 20.0)) == 0
+    assert drift(residuals, 20 + 0.1 * chance.normal(size=40)) == 0  # one setting of a bench
+    assert abs(drift(residuals, np.tile([20.0, 60.0, 120.0, 200.0], 10))) < 2
+    curve = np.tile([1.0, -1.0, -1.0, 1.0], 10) + 0.1 * chance.normal(size=40)
+    assert drift(curve, np.tile([20.0, 60.0, 120.0, 200.0], 10)) > 3
+    shuffled = chance.permutation(40)
+    along = np.tile([20.0, 60.0, 120.0, 200.0], 10)
+    assert drift(curve[shuffled], along[shuffled]) == pytest.approx(drift(curve, along))
+
+
 def test_two_numbers_of_which_only_the_sum_counts_are_tangled_and_have_no_interval():
     slopes = np.stack([np.ones_like(X), X, 2 * X], axis=1)
     found = confidence(np.sin(9 * X), slopes)
@@ -122,7 +151,7 @@ def test_three_that_only_together_are_tangled_are_named_together():
     assert found.tangled == ((0, 1, 2),)
 
 
-def test_a_number_that_changes_nothing_is_not_told_and_hurts_no_other():
+def test_a_number_that_changes_nothing_is_not_determined_and_hurts_no_other():
     slopes = np.stack([np.ones_like(X), X, np.zeros_like(X)], axis=1)
     found = confidence(np.sin(9 * X), slopes)
     alone = confidence(np.sin(9 * X)[:], slopes[:, :2])
@@ -136,8 +165,8 @@ def test_a_number_that_changes_nothing_is_not_told_and_hurts_no_other():
 
 def test_of_tangled_numbers_the_one_in_front_is_taken():
     slopes = 10 * np.stack([np.ones_like(X), X, X, 1e-3 * X**2], axis=1)
-    assert told(slopes, widest=0.5).tolist() == [True, True, False, False]
-    assert told(slopes[:2], widest=0.5).sum() <= 1  # two values have no freedom left for two
+    assert determined(slopes, widest=0.5).tolist() == [True, True, False, False]
+    assert determined(slopes[:2], widest=0.5).sum() <= 1  # two values have no freedom left for two
 
 
 def test_a_number_that_would_leave_its_box_stands_at_the_bound_without_interval():
@@ -158,8 +187,8 @@ def test_points_where_the_model_has_no_values_are_gone_round():
     np.testing.assert_allclose(found.point, [0.9, 0.5], rtol=1e-8)
 
 
-def test_as_many_numbers_as_values_cannot_be_judged():
-    with pytest.raises(ValueError, match="2 values leave no freedom to judge 2 numbers"):
+def test_as_many_numbers_as_values_cannot_be_assessed():
+    with pytest.raises(ValueError, match="2 values leave no freedom to determine 2 numbers"):
         confidence(np.zeros(2), LINE[:2])
 
 

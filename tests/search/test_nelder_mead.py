@@ -7,8 +7,8 @@ import pytest
 
 from camring.search.minimise import minimise
 from camring.search.nelder_mead import NelderMead
+from camring.search.nelder_mead_moves import to_angles, to_box
 from camring.search.problem import Evaluation, Problem, Stop
-from camring.search.simplex import to_angles, to_box
 
 
 def problem(objective, dimension, constraints=None, count=0):

@@ -5,10 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from scipy.optimize import rosen, rosen_der
 
-from camring.search.front import FrontProblem, trace_front
 from camring.search.multipliers import multipliers
-from camring.search.pareto import evenly_spread, hypervolume, non_dominated
+from camring.search.pareto import scalarised
+from camring.search.pareto.dominance import evenly_spread, hypervolume, non_dominated
+from camring.search.pareto.front import FrontProblem, trace_front
 
 clouds = arrays(float, st.tuples(st.integers(1, 30), st.just(2)), elements=st.floats(0, 1))
 
@@ -146,3 +148,21 @@ def test_no_limit_explains_a_slope_towards_the_inside():
     assert factors.tolist() == [0.0]
     assert left == pytest.approx(1.0)
     assert multipliers(np.array([1.0, 0.0]), np.zeros((0, 2)))[1] == 1.0
+
+
+def test_an_end_of_the_front_is_followed_for_as_long_as_it_comes_down(monkeypatch):
+    """Along Rosenbrock's valley, which one descent of 25 evaluations cannot leave behind."""
+    monkeypatch.setattr(scalarised, "PATIENCE", 25)
+
+    def values(point):
+        return np.array([np.log1p(rosen(4 * point - 2)), np.sum((point - 1) ** 2)]), -np.ones(1)
+
+    def slopes(point):
+        at = 4 * point - 2
+        of_valley = 4 * rosen_der(at) / (1 + rosen(at))
+        return np.stack([of_valley, 2 * (point - 1)]), np.zeros((1, 4))
+
+    start = np.array([0.2, 0.75, 0.2, 0.75])
+    front = trace_front(FrontProblem.one_by_one(values, slopes), [start], 3)
+    lowest = np.min(front.objectives, axis=0)
+    assert lowest == pytest.approx([0, 0], abs=1e-3)

@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.special import ndtri
 
-from camring.search.contributions import by_regression, by_slopes
-from camring.search.distributions import KINDS, WIDTHS, deviates, owners
 from camring.search.gradient import GradientSearch
 from camring.search.minimise import minimise
-from camring.search.robust import RobustFunction, Scattered, ScatteredSlopes
-from camring.search.statistic import SMOOTHING, MeanPlus, SmoothQuantile
+from camring.search.scatter.contributions import by_regression, by_slopes
+from camring.search.scatter.distributions import KINDS, WIDTHS, deviates, owners
+from camring.search.scatter.robust import RobustFunction, Scattered, ScatteredSlopes
+from camring.search.scatter.statistic import SMOOTHING, MeanPlus, SmoothQuantile
 
 WORST = SmoothQuantile(0.95)
 STATISTICS = [MeanPlus(0.0), MeanPlus(2.0), SmoothQuantile(0.5), SmoothQuantile(0.95)]
@@ -110,7 +110,7 @@ class TestContributions:
     KINDS = ("uniform", "normal", "phase")
     SLOPES = np.array([3.0, -2.0, 0.5, 1.0])
 
-    def test_of_a_linear_result_both_roads_are_exact(self):
+    def test_of_a_linear_result_both_solvers_are_exact(self):
         chances = deviates(self.KINDS, 1024, 0)
         values = 7 + chances @ self.SLOPES
         exact = [9, 4, 0.25 + 1]

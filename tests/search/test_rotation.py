@@ -3,9 +3,9 @@
 import jax
 import numpy as np
 
-from camring.search.gaussian_process import Hyperparameters, condition_once, pad, predict
-from camring.search.likelihood import fit, standard_starts
-from camring.search.rotation import fit_with_axes, mean_gradients
+from camring.search.surrogate.gaussian_process import Hyperparameters, condition_once, pad, predict
+from camring.search.surrogate.likelihood import fit, standard_starts
+from camring.search.surrogate.rotation import fit_with_axes, mean_gradients
 
 DIMENSION, COUNT = 3, 60
 

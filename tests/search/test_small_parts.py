@@ -7,12 +7,12 @@ from hypothesis import strategies as st
 from threadpoolctl import ThreadpoolController
 
 from camring.search.convergence import Convergence
-from camring.search.dataset import collect
 from camring.search.problem import Evaluation, best_of
 from camring.search.sampling import generator, initial_point, sobol
+from camring.search.surrogate.dataset import collect
+from camring.search.surrogate.warp import Warp, candidate_warps
 from camring.search.threads import one_linear_algebra_thread
 from camring.search.trust_region import TrustRegion
-from camring.search.warp import Warp, candidate_warps
 
 finite = st.floats(-1e6, 1e6)
 

@@ -3,7 +3,7 @@
 A cam answers one question, the pitch radius at a shaft angle with its exact
 derivatives, and says where its polynomial pieces meet. Two final classes: a
 spline for the radius itself and a planar spline curve whose radius is found
-at a polar angle (model.md section 2).
+at a polar angle (docs/theory.md section 2).
 """
 
 from abc import abstractmethod
@@ -68,7 +68,19 @@ class AbstractCam(eqx.Module):
 
 
 class RadialCam(AbstractCam):
-    """A periodic B-spline for the radius: `r = sum_j c_j B((angle - j h)/h)`."""
+    """A periodic B-spline for the radius: `r = sum_j c_j B((angle - j h)/h)`.
+
+    Control value `j` of `n` acts at the angle `j` times `h`, the period over `n`; it is no
+    radius of the curve itself. Degree 3, 4 or 5. docs/theory.md section 2.
+
+    Examples
+    --------
+    >>> from math import pi
+    >>> cam = camring.RadialCam([0.18, 0.19, 0.20, 0.19], repeats=6)  # m, one of 6 lobes
+    >>> radius = cam.pitch_radius(pi / 24)
+    >>> round(float(radius.value), 6), round(float(radius.first), 6)  # m, m/rad
+    (0.185417, 0.028648)
+    """
 
     control_radii: Q[Float[Array, " control"], "m"] = eqx.field(converter=real)
     repeats: int = eqx.field(static=True, kw_only=True)
@@ -108,7 +120,18 @@ class PlanarCam(AbstractCam):
 
     The control points of one period are given, the others follow by rotation.
     Holds while the curve is star-shaped about the shaft (`x y' - y x' > 0`),
-    which `least_turning` measures.
+    which `least_turning` measures. docs/theory.md section 2.
+
+    Examples
+    --------
+    Points on a circle, 4 for each of 6 lobes, are nearly a circle:
+
+    >>> import numpy as np
+    >>> turned = np.arange(4) * 2 * np.pi / 24
+    >>> points = 0.2 * np.stack([np.cos(turned), np.sin(turned)], axis=1)  # m, shape (4, 2)
+    >>> cam = camring.PlanarCam(points, repeats=6)
+    >>> round(float(cam.pitch_radius(0.1).value), 4), float(cam.least_turning()) > 0
+    (0.1977, True)
     """
 
     control_points: Q[Float[Array, "control 2"], "m"] = eqx.field(converter=real)

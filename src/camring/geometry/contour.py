@@ -10,7 +10,7 @@ from camring.numerics.spline import Jet
 def pressure_angle(radius: Jet) -> Q[Float[Array, "*grid"], "rad"]:
     """Angle between the contact normal and the piston axis: tan(phi) = r'/r.
 
-    model.md section 2.
+    docs/theory.md section 2.
     """
     return jnp.arctan2(radius.first, radius.value)
 
@@ -18,7 +18,7 @@ def pressure_angle(radius: Jet) -> Q[Float[Array, "*grid"], "rad"]:
 def pitch_curvature(radius: Jet) -> Q[Float[Array, "*grid"], "1/m"]:
     """Curvature of the pitch curve, positive where it bends round the shaft.
 
-    `(r^2 + 2 r'^2 - r r'') / (r^2 + r'^2)^(3/2)`, model.md section 2.
+    `(r^2 + 2 r'^2 - r r'') / (r^2 + r'^2)^(3/2)`, docs/theory.md section 2.
     """
     squared_speed = radius.value**2 + radius.first**2
     bend = squared_speed + radius.first**2 - radius.value * radius.second

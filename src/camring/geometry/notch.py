@@ -13,8 +13,14 @@ class ReliefNotch(eqx.Module):
 
     Its area grows with the square of the angle from the notch's tip to the
     port's edge, and stays: `alpha + f clip((d + D/2 + g)/g, 0, 1)^2`, at most
-    1, on the opening side `d < 0`. Whatever the window's shape. model.md
+    1, on the opening side `d < 0`. Whatever the window's shape. docs/theory.md
     section 13; Edge and Darling (1986) for what it does to commutation.
+
+    Examples
+    --------
+    >>> notch, window = camring.ReliefNotch(angle=0.05, area=0.1), camring.LinearWindow(0.5)
+    >>> round(float(notch.opening(window, -0.225, 0.4)), 3)  # before the window's own edge
+    0.025
     """
 
     angle: Q[Float[Array, ""], "rad"] = eqx.field(converter=real)
@@ -38,7 +44,7 @@ class ReliefNotch(eqx.Module):
     ) -> Q[Float[Array, " edge"], "rad"]:
         """The window's edges, the notch's tip, where both together are full, and the centre.
 
-        In no order: in lanes, a sort along the last axis would mix motors.
+        In no order: in a batch, a sort along the last axis would mix motors.
         """
         tip = -width / 2 - self.angle
         full = window.opens_to(1 - self.area, width)

@@ -3,7 +3,7 @@
 Points of the plane are complex numbers in metres, x to the right and y up; the
 curve runs anticlockwise round the shaft. Computed with the spline's own
 polynomials in NumPy: nothing here is differentiated by, or waits for, a
-compiler. model.md section 2.
+compiler. docs/theory.md section 2.
 """
 
 from collections.abc import Callable
@@ -137,11 +137,10 @@ class Outline:
             parameter = parameter - lag / np.imag(first / value)
         return parameter
 
-    def stray(self, point: np.ndarray, near: np.ndarray, distance: float = 0.0) -> np.ndarray:
-        """How far points lie outside the curve at `distance`, m, along the exact normal.
+    def foot(self, point: np.ndarray, near: np.ndarray) -> np.ndarray:
+        """Parameters of the pitch curve whose normals pass through points.
 
-        The foot of the normal on the pitch curve is found by Newton from the
-        parameters `near`; it is unique where no undercut is.
+        Found by Newton from the parameters `near`; unique where no undercut is.
         """
         parameter = np.array(near, float)
         for _ in range(_NEWTON_STEPS):
@@ -149,7 +148,11 @@ class Outline:
             away = foot - point
             slope = np.abs(first) ** 2 + np.real(np.conj(second) * away)
             parameter = parameter - np.real(np.conj(first) * away) / slope
-        foot, first, _ = self._curve(parameter)
+        return parameter
+
+    def stray(self, point: np.ndarray, near: np.ndarray, distance: float = 0.0) -> np.ndarray:
+        """How far points lie outside the curve at `distance`, m, along the exact normal."""
+        foot, first, _ = self._curve(self.foot(point, near))
         return np.real(np.conj(-1j * first) * (point - foot)) / np.abs(first) - distance
 
     def undercut(self, distance: float) -> Undercut:

@@ -5,15 +5,15 @@ port. On a port circle of a chosen radius, the shapes follow: a chamber's port
 of angular width `b` that slides over a slot of width `D - b` is open over `D`,
 and comes to its full area over `b`. For the linear window both are sectors
 between the same two radii, for the round one a hole over a slot with round
-ends; of a tabulated window nothing but its angles can be drawn. model.md
-sections 3 and 13.
+ends; of a tabulated window, and of two kinds whose areas differ, nothing but the angles
+can be drawn. docs/theory.md sections 3, 13 and 14.
 """
 
 from dataclasses import dataclass
 from math import degrees, pi, sqrt
 from typing import Literal
 
-from camring.geometry.valve_plate import ValvePlate
+from camring.geometry.valve_plate import Port, ValvePlate
 from camring.geometry.window import LinearWindow, RoundWindow
 
 __all__ = ["PlatePorts", "PortError", "Slot", "ports_of"]
@@ -108,13 +108,17 @@ def ports_of(plate: ValvePlate, usual_circle: float, circle: float | None = None
     PortError
         When ports of this area cannot lie on the circle, or slots run into each other.
     """
-    area = float(plate.port_area)
-    narrow = min(float(plate.supply.width), float(plate.return_.width))
+    kinds = (plate.supply, plate.return_)
+    area, other = (float(plate.area_of(port)) for port in kinds)
+    narrow = min(float(port.width) for port in kinds)
     window = plate.window
-    if isinstance(window, RoundWindow):
-        shape: Shape = "round"
+    if area != other:  # one port of a chamber opens to both kinds: no shape shows both areas
+        shape: Shape = "timing"
+        radius, width, height = circle or usual_circle, 0.0, sqrt(max(area, other))
+    elif isinstance(window, RoundWindow):
+        shape = "round"
         height = sqrt(4 * area / pi)
-        modelled = float(window.ramp) * narrow / 2
+        modelled = _quickest(plate)
         radius = circle or height / modelled
         width = height / radius
         if width > narrow / 2 * (1 + 1e-9):
@@ -126,7 +130,7 @@ def ports_of(plate: ValvePlate, usual_circle: float, circle: float | None = None
             )
     elif isinstance(window, LinearWindow):
         shape, radius = "sector", circle or usual_circle
-        width = float(window.ramp) * narrow / 2
+        width = _quickest(plate)
         height = area / (radius * width)
         if height >= radius:
             raise PortError(
@@ -150,7 +154,8 @@ def _slots(plate: ValvePlate, chamber: float) -> tuple[Slot, ...]:
         # A chamber port of no width is a window of which only the angles are known.
         reach = half - chamber / 2
         flat = half - chamber if chamber else half
-        tip = None if plate.notch is None else float(plate.notch.angle)
+        notch = plate.notch_of(port)
+        tip = None if notch is None else float(notch.angle)
         for number in range(plate.lobes):
             centre = float(port.centre + plate.shift) + plate.pitch * number
             centre %= 2 * pi
@@ -183,10 +188,21 @@ def _require_land_between(slots: tuple[Slot, ...]) -> None:
             )
 
 
+def _ramp(plate: ValvePlate, port: Port) -> float:
+    """Angle over which a window of a kind comes to its full area."""
+    window = plate.window_of(port)
+    assert isinstance(window, (LinearWindow, RoundWindow))
+    return float(window.ramp) * float(port.width) / 2
+
+
+def _quickest(plate: ValvePlate) -> float:
+    """That of the kind that opens over the smaller angle."""
+    return min(_ramp(plate, port) for port in (plate.supply, plate.return_))
+
+
 def _ramp_error(plate: ValvePlate, width: float) -> float:
-    if not isinstance(plate.window, (LinearWindow, RoundWindow)):
+    if not width:
         return 0.0
-    ramp = float(plate.window.ramp)
-    errors = [width / (ramp * float(port.width) / 2) - 1 for port in (plate.supply, plate.return_)]
+    errors = [width / _ramp(plate, port) - 1 for port in (plate.supply, plate.return_)]
     worst = max(errors, key=abs)
     return worst if abs(worst) > 1e-9 else 0.0

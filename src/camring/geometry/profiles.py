@@ -106,7 +106,7 @@ class ZeroRipple(NamedTuple):
 def zero_ripple_cams(pistons: int, lobes: int, count: int, degree: int = 3) -> Iterator[ZeroRipple]:
     """Every zero-ripple spline cam of the kernels here, symmetric about a control value.
 
-    model.md section 11: the rising slope is a box of `j/q` of a lobe convolved
+    docs/theory.md section 11: the rising slope is a box of `j/q` of a lobe convolved
     with a non-negative kernel, `q` the distinct piston phases; flank and fall
     must not meet, `steps + degree - 1 <= count/2`.
 

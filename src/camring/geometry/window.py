@@ -2,7 +2,7 @@
 
 The shapes are exchangeable: each answers with the open share of the port area,
 with the places where that share is not smooth, and with the place on its
-opening side where it comes to a given share. model.md sections 3 and 13.
+opening side where it comes to a given share. docs/theory.md sections 3 and 13.
 """
 
 from abc import abstractmethod
@@ -39,7 +39,13 @@ class LinearWindow(AbstractWindow):
     """A trapezoid of opening: linear ramps, flat between them.
 
     `alpha = clip((D/2 - |d|) / (ramp D/2), 0, 1)`; `ramp = 1` is the
-    derivation's triangle. model.md section 3.
+    derivation's triangle. docs/theory.md section 3.
+
+    Examples
+    --------
+    >>> window = camring.LinearWindow(ramp=0.5)
+    >>> [round(float(window.opening(distance, 0.4)), 3) for distance in (-0.2, -0.15, 0.0)]  # rad
+    [0.0, 0.5, 1.0]
     """
 
     ramp: Q[Float[Array, ""], "1"] = eqx.field(converter=real)
@@ -59,8 +65,14 @@ class RoundWindow(AbstractWindow):
 
     `alpha = 2/pi (acos(1-u) - (1-u) sqrt(1-(1-u)^2))` with `u` the overlapping
     length over the port's diameter, `u = clip((D/2 - |d|) / (ramp D/2), 0, 1)`:
-    the ramp is the port's diameter over half the window's width. model.md
+    the ramp is the port's diameter over half the window's width. docs/theory.md
     section 13; two equal circles whose centres stand `1 - u` diameters apart.
+
+    Examples
+    --------
+    >>> window = camring.RoundWindow(ramp=0.5)
+    >>> [round(float(window.opening(distance, 0.4)), 3) for distance in (-0.2, -0.15, 0.0)]
+    [0.0, 0.391, 1.0]
     """
 
     ramp: Q[Float[Array, ""], "1"] = eqx.field(converter=real)
@@ -81,6 +93,12 @@ class TabulatedWindow(AbstractWindow):
     Positions are distances from the centre over half the window's width,
     ascending from -1 to 1, so the same table serves both ports and the width
     stays a design variable; the opening is zero outside them.
+
+    Examples
+    --------
+    >>> window = camring.TabulatedWindow([-1.0, -0.5, 0.5, 1.0], [0.0, 1.0, 1.0, 0.0])
+    >>> [round(float(window.opening(distance, 0.4)), 3) for distance in (-0.2, -0.15, 0.0)]
+    [0.0, 0.5, 1.0]
     """
 
     position: Q[Float[Array, " knot"], "1"] = eqx.field(converter=real)

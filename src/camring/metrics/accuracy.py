@@ -1,8 +1,7 @@
 """A motor looked at ever more finely until every result is as accurate as was asked.
 
-A short ladder of resolutions: each rung is compared with the one below it, the
-first with a coarser look made for that purpose. Only rungs that are stepped on
-are compiled.
+A short ladder of resolutions: each resolution is compared with two coarser solutions of the same
+program, and with the one below it. Only those that are stepped on are compiled.
 """
 
 from collections.abc import Callable
@@ -11,7 +10,11 @@ from typing import NamedTuple
 from camring.metrics.error_estimate import (
     CLIMBED_FACTOR,
     CLIMBED_FLOOR,
+    FLOOR,
+    RESOLUTIONS,
+    Floor,
     error_estimate,
+    largest,
     relative_error,
 )
 from camring.metrics.summary import Metrics
@@ -20,7 +23,7 @@ from camring.physics.cycle import Cycle
 from camring.physics.resolution import Resolution
 
 
-class Look(NamedTuple):
+class Solution(NamedTuple):
     """One motor at one operating point, seen at one resolution."""
 
     cycle: Cycle
@@ -28,7 +31,7 @@ class Look(NamedTuple):
 
 
 class Accurate(NamedTuple):
-    """What the last rung gave, and how good it is."""
+    """What the last resolution gave, and how good it is."""
 
     cycle: Cycle
     metrics: Metrics
@@ -40,7 +43,7 @@ class Accurate(NamedTuple):
 
     @property
     def relative_errors(self) -> dict[str, float]:
-        """The estimated error of each result of model.md section 10, as a share of it."""
+        """The estimated error of each result of docs/theory.md section 10, as a share of it."""
         return relative_error(self.metrics, self.error)
 
     @property
@@ -61,18 +64,18 @@ class Accurate(NamedTuple):
 
 
 def climb(
-    look: Callable[[Resolution], Look],
+    solution_at: Callable[[Resolution], Solution],
     accuracy: float = 1e-5,
     ladder: tuple[Resolution, ...] | None = None,
 ) -> Accurate:
-    """The first rung whose estimated error is within the accuracy, else the last sound one.
+    """The first resolution whose estimated error is within the accuracy, else the last sound one.
 
     Parameters
     ----------
-    look
+    solution_at
         Simulates and summarises at a resolution.
     accuracy
-        Wanted of each result of model.md section 10, relative; see
+        Wanted of each result of docs/theory.md section 10, relative; see
         `error_estimate.relative_error` for those that are small differences.
     ladder
         `Resolution.ladder()` if not given.
@@ -80,20 +83,40 @@ def climb(
     Notes
     -----
     No finer mesh mends a motor that is refused for what it is, so such a one stays on
-    the first rung. Not traceable: each step depends on numbers.
+    the first resolution. Not traceable: each step depends on numbers.
     """
     first, *rest = ladder or Resolution.ladder()
-    seen = look(first)
-    error = error_estimate(seen.metrics, look(first.second_look()).metrics)
+    seen = solution_at(first)
+    error = _beside_coarser_solutions(solution_at, first, seen.metrics, FLOOR)
     found = Accurate(*seen, error, first, accuracy)
     for finer in rest:
         if found.reached or not _curable(found.cycle):
             break
-        seen = look(finer)
-        error = error_estimate(seen.metrics, found.metrics, CLIMBED_FACTOR, CLIMBED_FLOOR)
+        seen = solution_at(finer)
+        error = largest(
+            error_estimate(seen.metrics, found.metrics, CLIMBED_FACTOR, CLIMBED_FLOOR),
+            _beside_coarser_solutions(solution_at, finer, seen.metrics, CLIMBED_FLOOR),
+        )
         if not (_sound(found.cycle) and not _sound(seen.cycle)):
             found = Accurate(*seen, error, finer, accuracy)
     return found
+
+
+def _beside_coarser_solutions(
+    solution_at: Callable[[Resolution], Solution],
+    resolution: Resolution,
+    results: Metrics,
+    floor: Floor,
+) -> Metrics:
+    """The error of results at a resolution, from solutions of the same program at less."""
+    return largest(
+        *(
+            error_estimate(
+                results, solution_at(resolution.second_solution(share)).metrics, factor, floor
+            )
+            for share, factor in RESOLUTIONS
+        )
+    )
 
 
 def _sound(cycle: Cycle) -> bool:

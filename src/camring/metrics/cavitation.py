@@ -26,8 +26,8 @@ class Cavitation(eqx.Module):
 
 def cavitation(
     cycle: Cycle,
-    pressure: Q[Float[Array, "point element *lane"], "Pa"],
-    least_pressure: Q[Float[Array, "*lane"], "Pa"],
+    pressure: Q[Float[Array, "point element *batch"], "Pa"],
+    least_pressure: Q[Float[Array, "*batch"], "Pa"],
     fractions: Float[np.ndarray, " point"] = EXTREMUM_FRACTIONS,
 ) -> Cavitation:
     """Cavitation of a cycle whose pressure is sampled at fractions of every element.

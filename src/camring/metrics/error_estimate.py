@@ -1,6 +1,8 @@
-"""How wrong results may be, from a second look at a coarser resolution."""
+"""How wrong results may be, from a second solution at a coarser resolution."""
 
 from collections.abc import Iterator
+from dataclasses import replace
+from typing import NamedTuple
 
 import jax
 import numpy as np
@@ -11,24 +13,46 @@ FACTOR = 2
 """How many times what a mesh of seven tenths changes is claimed: extremes and ripples need
 not shrink evenly."""
 
-FLOOR = 4e-6
-"""Share of a result below which two meshes may agree by chance."""
+RESOLUTIONS = ((0.7, FACTOR), (0.85, 3.0))
+"""Shares of the elements that a mesh is compared with, and how many times each difference is
+claimed; the larger counts. Errors that do not shrink evenly can make two meshes agree by
+chance: the same chance twice is rare. At order four the second difference claims half of
+what the first does, so that it speaks only where the first is silent."""
 
 CLIMBED_FACTOR = 1.5
 """The same after the elements were doubled: the difference is the coarser mesh's error."""
 
-CLIMBED_FLOOR = 2e-6
+
+class Floor(NamedTuple):
+    """Shares of a result below which two meshes may agree by chance."""
+
+    of_results: float
+    of_force: float
+    """Of the smallest contact force: where some ten newtons are left of tens of thousands, 1e-8 of
+    the pressure is 5e-6 of it."""
+
+
+FLOOR = Floor(4e-6, 8e-6)
+CLIMBED_FLOOR = Floor(2e-6, 2e-6)
 
 SMALL_BESIDE = {
     "throttling_loss": ("input_power", 1e-4),
     "leakage_loss": ("input_power", 1e-4),
+    "full_leakage_loss": ("input_power", 1e-4),
     "friction_loss": ("input_power", 1e-4),
     "compression_loss": ("input_power", 1e-4),
     "line_loss": ("input_power", 1e-4),
+    "return_line_loss": ("input_power", 1e-4),
+    "port_power": ("input_power", 1e-4),
+    "case_drain": ("supply_flow", 1e-4),
+    "return_flow": ("supply_flow", 1e-4),
+    "case_heat": ("input_power", 1e-4),
+    "surface_heat": ("input_power", 1e-4),
     "min_pressure": ("max_pressure", 1e-4),
     "supply_pressure_swing": ("max_pressure", 1e-4),
+    "return_pressure_swing": ("max_pressure", 1e-4),
 }
-"""Differences of large numbers: below this share of another result they are judged by it."""
+"""Differences of large numbers: below this share of another result they are compared with it."""
 
 FORCE_SHARE = 1e-3
 """The same of the smallest contact force, beside the force of the ports' pressure difference."""
@@ -46,16 +70,16 @@ COMPANIONS = frozenset(
         "share_below_vapour",
     }
 )
-"""Differences and shares that have no size of their own, beside the results of model.md section 10.
+"""Differences and shares of no size of their own, beside the results (docs/theory.md section 10).
 """
 
 
 def error_estimate(
-    results: Metrics, coarser: Metrics, factor: float = FACTOR, floor: float = FLOOR
+    results: Metrics, coarser: Metrics, factor: float = FACTOR, floor: Floor = FLOOR
 ) -> Metrics:
     """Absolute error of each result: what a coarser mesh changes, and a floor.
 
-    The coarser mesh (`Resolution.second_look`) has about four times the error, so
+    The coarser mesh (`Resolution.second_solution`) has about four times the error, so
     the difference is mostly its own and overstates that of the finer mesh. Extremes
     move by less regular steps, hence the factor; the floor stands for places where
     both happen to agree. All numbers are measured: against the independent solver,
@@ -68,11 +92,18 @@ def error_estimate(
         of `coarser`.
     """
     with np.errstate(invalid="ignore"):  # an undercut ring's stress has no end, nor has its error
-        return jax.tree.map(
-            lambda fine, coarse: factor * np.abs(fine - coarse) + floor * np.abs(fine),
+        found = jax.tree.map(
+            lambda fine, coarse: factor * np.abs(fine - coarse) + floor.of_results * np.abs(fine),
             jax.device_get(results),
             jax.device_get(coarser),
         )
+    further = (floor.of_force - floor.of_results) * np.abs(np.asarray(results.min_contact_force))
+    return replace(found, min_contact_force=found.min_contact_force + further)
+
+
+def largest(*errors: Metrics) -> Metrics:
+    """The largest of several estimates of each result's error; no number if one is none."""
+    return jax.tree.map(lambda *each: np.max(np.stack(each), axis=0), *errors)
 
 
 def relative_error(results: Metrics, error: Metrics) -> dict[str, float]:

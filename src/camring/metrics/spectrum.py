@@ -1,7 +1,7 @@
 """Harmonics by shaft order, and what the number of pistons does to them.
 
 `x_n = 1/(2 pi) integral x e^(-i n angle) d angle`, `n` counted per revolution
-of the shaft (model.md section 5). A waveform that repeats with the cam holds
+of the shaft (docs/theory.md section 5). A waveform that repeats with the cam holds
 multiples of its repeats only; summing equally spaced pistons keeps the orders
 that the number of pistons divides, times that number, and removes the rest.
 """
@@ -13,26 +13,8 @@ import numpy as np
 from jaxtyping import Array, Complex, Float
 
 from camring.numerics.fourier import harmonics
-from camring.numerics.quadrature import gauss_legendre
-from camring.numerics.quantity import Q
 from camring.physics.cycle import Cycle
-from camring.physics.piston_state import PistonState, sample_elements
-
-QUADRATURE_POINTS = 4
-
-
-class QuadratureSamples(NamedTuple):
-    """The reference piston at Gauss points of every element, and their weights."""
-
-    piston: PistonState
-    pressure_slope: Q[Float[Array, "point element"], "Pa/rad"]
-    """Slope of the solution itself, which meets the equation to solver accuracy only."""
-    weights: Float[Array, "point element *lane"]
-
-    def mean(self, values: Float[Array, "point element *lane"]) -> Float[Array, "*lane"]:
-        """Mean over a period."""
-        total = jnp.sum(self.weights * values, axis=(0, 1))
-        return total / jnp.sum(self.weights, axis=(0, 1))
+from camring.physics.piston_state import QuadratureSamples, quadrature_samples
 
 
 class Spectrum(NamedTuple):
@@ -47,18 +29,8 @@ class Spectrum(NamedTuple):
         return jnp.sum(jnp.abs(self.amplitude) ** 2)
 
     def ripple(self) -> Float[Array, ""]:
-        """`R_x`, one-sided as the derivation defines it. model.md section 5."""
+        """`R_x`, one-sided as the derivation defines it. docs/theory.md section 5."""
         return jnp.sqrt(self.power()) / jnp.abs(self.mean)
-
-
-def quadrature_samples(cycle: Cycle) -> QuadratureSamples:
-    """Sample a cycle where its integrals are taken."""
-    points, weights = gauss_legendre(QUADRATURE_POINTS)
-    piston = sample_elements(cycle, jnp.asarray(points))
-    slope = cycle.orbit.slope(jnp.asarray(points)) / cycle.fluid.state_slope(
-        piston.chamber_pressure
-    )
-    return QuadratureSamples(piston, slope, jnp.asarray(weights)[:, None] * cycle.orbit.mesh.width)
 
 
 def chamber_spectra(

@@ -13,7 +13,7 @@ from camring.physics.cycle import Cycle
 
 
 class Oscillator(eqx.Module):
-    """A piston's mass on its chamber's oil. model.md section 4."""
+    """A piston's mass on its chamber's oil. docs/theory.md section 4."""
 
     stiffness: Q[Float[Array, ""], "N/m"]
     natural_frequency: Q[Float[Array, ""], "rad/s"]

@@ -5,8 +5,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q
-from camring.physics.fluid import AbstractFluid
 from camring.physics.motor import Motor
+from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.operating_point import OperatingPoint
 
 _SAMPLES = 4096

@@ -19,7 +19,7 @@ if TYPE_CHECKING:  # SciPy takes half a second, which whoever only simulates nee
 __all__ = ["ClosedSpline", "FitError", "fit_closed"]
 
 _GAUSS = np.polynomial.legendre.leggauss(12)
-_LOOKS = (np.arange(8) + 0.5) / 8  # where a piece is looked at, as fractions of its length
+_CHECKED_AT = (np.arange(8) + 0.5) / 8  # where a piece is looked at, as fractions of its length
 _MOST_ROUNDS = 12
 _MOST_PIECES = 20_000
 
@@ -138,6 +138,6 @@ def _through(
     point = follow(places)[0]
     point[-1] = point[0]
     bare = ClosedSpline(arc, point, 0.0)
-    looked = bare.at(arc[:-1, None] + lengths[:, None] * _LOOKS)
-    errors = np.abs(stray(looked, places[:-1, None] + width[:, None] * _LOOKS))
+    looked = bare.at(arc[:-1, None] + lengths[:, None] * _CHECKED_AT)
+    errors = np.abs(stray(looked, places[:-1, None] + width[:, None] * _CHECKED_AT))
     return ClosedSpline(arc, point, float(errors.max())), errors

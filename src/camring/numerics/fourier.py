@@ -36,18 +36,20 @@ def _samples(count: int) -> int:
     return -(-least // step) * step
 
 
-def _integrate(powers: list[Array], width: Float[Array, " element"]) -> list[Array]:
+def integral(
+    powers: list[Array], width: Float[Array, " element *batch"], axis: int = -1
+) -> list[Array]:
     """The periodic integral of a piecewise polynomial, up to a constant: one power more.
 
-    Coefficients (wave, element) in ascending powers of the element fraction. The
+    Coefficients in ascending powers of the element fraction, elements along an axis. The
     mean is taken off first, so that what remains closes over the period.
     """
     over = [width / (power + 1) * each for power, each in enumerate(powers)]
     whole = _total(over)
-    mean = jnp.sum(whole, axis=-1, keepdims=True) / jnp.sum(width)
+    mean = jnp.sum(whole, axis=axis, keepdims=True) / jnp.sum(width, axis=axis, keepdims=True)
     over[0] = over[0] - width * mean
     whole = whole - width * mean
-    before = jnp.cumsum(whole, axis=-1) - whole
+    before = jnp.cumsum(whole, axis=axis) - whole
     return [before, *over]
 
 
@@ -81,7 +83,7 @@ def harmonics(
         for row in _powers_matrix(points)
     ]
     for _ in range(INTEGRATIONS):
-        powers = _integrate(powers, mesh.width)
+        powers = integral(powers, mesh.width)
 
     samples = _samples(count)
     element, fraction = mesh.locate(mesh.start[0] + period / samples * jnp.arange(samples))

@@ -57,7 +57,7 @@ class ElementCount(NamedTuple):
     arrays of one shape, and one compiled program.
     """
 
-    room: int
+    capacity: int
     used: int | Int[Array, ""]
 
 
@@ -125,7 +125,7 @@ def equidistribute(
     first = wanted.astype(jnp.int32) + promised
     ordinary = first[1:] - first[:-1] - thin
 
-    element = jnp.arange(elements.room)
+    element = jnp.arange(elements.capacity)
     segment = jnp.searchsorted(first[:-1], element, side="right") - 1
     share_mass = (mass_at[1:] - mass_at[:-1]) / ordinary
     past_thin = element - (first[:-1] + thin)[segment]

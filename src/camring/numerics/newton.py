@@ -12,7 +12,7 @@ Stages = TypeVar("Stages")
 
 def damped_newton(
     improved: Callable[[Stages], Stages],
-    share: Callable[[Stages, Stages], Float[Array, "*lane"]],
+    share: Callable[[Stages, Stages], Float[Array, "*batch"]],
     stages: Stages,
     tolerance: float | Float[Array, ""],
     limit: int,
@@ -23,14 +23,16 @@ def damped_newton(
     reverses, Newton leaps to and fro for ever. A stage whose step turns back
     without shrinking takes half of it, and wins its full step back later.
 
+    Where problems lie side by side, each stops by its own step: what it ends with is, to
+    the last bit, the same beside any others. One that has no number any more stops too.
+
     Parameters
     ----------
     improved
         One full Newton step.
     share
         How large a step is against the range of the stages that it leads to. One number,
-        or one for each lane where problems lie side by side along the last axis; the worst
-        decides.
+        or one for each member where problems lie side by side along the last axis.
     stages
         One array, or a tree of several.
     limit
@@ -39,19 +41,25 @@ def damped_newton(
 
     def unfinished(carry: tuple) -> Array:
         _, _, _, size, count = carry
-        return (size > tolerance) & (count < limit)
+        return jnp.any(size > tolerance) & (count < limit)
 
     def improve(carry: tuple) -> tuple:
-        current, before, part, _, count = carry
+        current, before, part, size, count = carry
         updated = improved(current)
         step = jax.tree.map(jnp.subtract, updated, current)
         part = jax.tree.map(_part, step, before, part)
-        onward = jax.tree.map(lambda at, part, step: at + part * step, current, part, step)
-        return onward, step, part, jnp.max(share(step, updated)), count + 1
+        going = size > tolerance
+
+        def onward(at: Array, part: Array, step: Array) -> Array:
+            return jnp.where(going, at + part * step, at)
+
+        moved = jax.tree.map(onward, current, part, step)
+        return moved, step, part, jnp.where(going, share(step, updated), size), count + 1
 
     start = stages, jax.tree.map(jnp.zeros_like, stages), jax.tree.map(jnp.ones_like, stages)
+    sizes = jax.eval_shape(share, stages, stages)
     stages, _, _, _, count = jax.lax.while_loop(
-        unfinished, improve, (*start, jnp.asarray(jnp.inf), jnp.asarray(0))
+        unfinished, improve, (*start, jnp.full(sizes.shape, jnp.inf), jnp.asarray(0))
     )
     return stages, count
 

@@ -24,7 +24,7 @@ the implicit function theorem on the discrete orbit; the mesh moves with its
 breakpoints, element fractions held.
 
 Arrays run over points of an element first and over elements last, so that the
-long axis is the one a processor's lanes run along.
+long axis is the one that a vector unit runs along.
 """
 
 from typing import NamedTuple
@@ -149,7 +149,7 @@ def solve_periodic(
         frozen, at_stages, mesh, frozen.guess(at_stages), tolerances[0], limit
     )
 
-    def look(current: tuple, tolerance: float | Float[Array, ""]) -> tuple[tuple, None]:
+    def refine(current: tuple, tolerance: float | Float[Array, ""]) -> tuple[tuple, None]:
         """Lays a mesh by what was found on the one before, and solves on it."""
         mesh, at_stages, stages, _ = current
         node_state, stages = newton_step(frozen, at_stages, mesh, stages)
@@ -166,9 +166,9 @@ def solve_periodic(
 
     found = (mesh, at_stages, stages, iterations)
     if resolution.refinements:
-        found, _ = look(found, tolerances[1])
+        found, _ = refine(found, tolerances[1])
         # The other meshes have as many elements as this one: they share its program.
-        found, _ = jax.lax.scan(look, found, jnp.asarray(tolerances[2:]))
+        found, _ = jax.lax.scan(refine, found, jnp.asarray(tolerances[2:]))
     mesh, _, stages, iterations = found
     return settle(equation, breakpoints, period, mesh, stages, iterations)
 
@@ -194,14 +194,14 @@ def settle(
     return Orbit(mesh, node_state, stages, residual, iterations)
 
 
-def extent(states: Float[Array, "point element *lane"]) -> Float[Array, "*lane"]:
+def extent(states: Float[Array, "point element *batch"]) -> Float[Array, "*batch"]:
     """Range of the states, which errors are measured against; never nil."""
     return jnp.max(states, axis=(0, 1)) - jnp.min(states, axis=(0, 1)) + 1e-300
 
 
 def share_of_range(
-    step: Float[Array, "point element *lane"], states: Float[Array, "point element *lane"]
-) -> Float[Array, "*lane"]:
+    step: Float[Array, "point element *batch"], states: Float[Array, "point element *batch"]
+) -> Float[Array, "*batch"]:
     """The largest part of a step, over the range of the states."""
     return jnp.max(jnp.abs(step), axis=(0, 1)) / extent(states)
 

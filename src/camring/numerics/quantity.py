@@ -10,6 +10,7 @@ from typing import Annotated as Q
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 from jaxtyping import ArrayLike as ArrayLike
 
@@ -20,4 +21,6 @@ __all__ = ["Q", "real"]
 
 def real(value: ArrayLike) -> Float[Array, "..."]:
     """The value as a float64 array: the converter of every number a noun holds."""
+    if isinstance(value, float | int | np.ndarray | np.generic):
+        value = np.asarray(value, dtype=np.float64)  # JAX would compile a program to convert it
     return jnp.asarray(value, dtype=jnp.float64)

@@ -51,24 +51,33 @@ def horner(powers: Array | list[Array], fraction: Array) -> Array:
 
 
 def solve_stages(matrix: list[list[Array]], *right_sides: list[Array]) -> tuple[list[Array], ...]:
-    """Gaussian elimination for the 3 x 3 stage systems of all elements at once.
+    """Gaussian elimination for the stage systems of all elements at once, written out.
 
-    Without exchange of rows: where the rate falls with the state, all three leading minors
-    of `1 - width A slope` are sums of positive terms.
+    Of three rows for one equation, of six for two that are coupled. Without exchange of
+    rows: where the rate falls with the state, all leading minors of `1 - width A slope`
+    are sums of positive terms.
     """
-    (a, b, c), (d, e, f), (g, h, i) = matrix
-    one = 1 / a
-    down, further = d * one, g * one
-    e, f, h, i = e - down * b, f - down * c, h - further * b, i - further * c
-    two = 1 / e
-    last = h * two
-    three = 1 / (i - last * f)
+    rows, count = [list(row) for row in matrix], len(matrix)
+    inverse: list[Array] = []
+    share: list[dict[int, Array]] = []
+    for k in range(count):
+        inverse.append(1 / rows[k][k])
+        share.append({i: rows[i][k] * inverse[k] for i in range(k + 1, count)})
+        for i, down in share[k].items():
+            rows[i][k + 1 :] = [
+                entry - down * above
+                for entry, above in zip(rows[i][k + 1 :], rows[k][k + 1 :], strict=True)
+            ]
 
     def solved(right: list[Array]) -> list[Array]:
-        first, second, third = right
-        second = second - down * first
-        z = three * (third - further * first - last * second)
-        y = two * (second - f * z)
-        return [one * (first - b * y - c * z), y, z]
+        found = list(right)
+        for k in range(count):
+            for i, down in share[k].items():
+                found[i] = found[i] - down * found[k]
+        for k in reversed(range(count)):
+            for j in range(k + 1, count):
+                found[k] = found[k] - rows[k][j] * found[j]
+            found[k] = inverse[k] * found[k]
+        return found
 
     return tuple(solved(right) for right in right_sides)

@@ -4,7 +4,7 @@ Nominal pressure is the ideal commutation wave, supply pressure while the
 chamber faces the supply port and return pressure while it faces the return
 port; the linear chamber adds the throttling drop that motion causes. No
 pressure equation is solved, so thousands of designs cost milliseconds
-(model.md section 7).
+(docs/theory.md section 7).
 """
 
 from math import pi
@@ -15,6 +15,7 @@ from jaxtyping import Array, Complex, Float
 from camring.geometry.angles import signed_distance
 from camring.geometry.extremes import extreme_radius
 from camring.geometry.valve_plate import ValvePlate
+from camring.metrics.displacement import driving
 from camring.numerics.quantity import Q
 from camring.objective.objective import Goal
 from camring.objective.terms import TERM_NAMES, weighted_sum
@@ -61,7 +62,8 @@ def _terms(system: System, point: OperatingPoint, goal: Goal) -> dict[str, Float
     radius = motor.cam.pitch_radius(angle)
     lift = radius.value - reference_radius(motor)
     stroke = extreme_radius(motor.cam, 1) - extreme_radius(motor.cam, -1)
-    displacement = motor.pistons * area * 2 * pi * jnp.mean(jnp.abs(radius.first)) / 2
+    travelled = jnp.abs(radius.first) * driving(motor.valve_plate, angle)
+    displacement = motor.pistons * area * 2 * pi * jnp.mean(travelled) / 2
     ideal_torque = drop * displacement / (2 * pi)
     ideal_flow = displacement * speed / (2 * pi)
 
@@ -74,10 +76,14 @@ def _terms(system: System, point: OperatingPoint, goal: Goal) -> dict[str, Float
         2 * ideal_flow / motor.pistons,
     )
     ripple = chamber.transfer(orders * speed) * jnp.fft.rfft(lift)
-    side = commutation_wave(motor.valve_plate, angle)
+    plate = motor.valve_plate
+    side = commutation_wave(plate, angle) * (1 - plate.idle_share(plate.supply, angle))
     pressure = point.return_pressure + drop * side + jnp.fft.irfft(ripple, count)
     damping = motor.viscous_damping(fluid)
-    force = radial_force(motor.piston, pressure, point.case_pressure, radius, speed, damping)
+    lowest = extreme_radius(motor.cam, -1)
+    force = radial_force(
+        motor.piston, pressure, point.case_pressure, radius, speed, damping, lowest
+    )
     torque = torque_by_virtual_work(force, radius)
 
     def power(wave: Float[Array, " angle"], kept: Array) -> tuple[Array, Array]:
@@ -87,12 +93,13 @@ def _terms(system: System, point: OperatingPoint, goal: Goal) -> dict[str, Float
 
     mean_torque, torque_power = power(motor.pistons * torque, orders % motor.pistons == 0)
     mean_gauge, pressure_power = power(pressure - point.return_pressure, orders >= 0)
-    leaked = motor.leakage_conductance(fluid) * motor.pistons
-    supplied = ideal_flow + leaked * jnp.mean(side * (pressure - point.case_pressure))
+    leaked = motor.leakage_flow(fluid, pressure, point.case_pressure)
+    supplied = ideal_flow + motor.pistons * jnp.mean(side * leaked)
+    share = mean_torque * speed / (drop * supplied)
     values = (
         torque_power / mean_torque**2,
         pressure_power / mean_gauge**2,
-        1 - mean_torque * speed / (drop * supplied),
+        1 - jnp.where(drop < 0, 1 / share, share),
         pressure_power / drop**2,
         torque_power / ideal_torque**2,
         jnp.mean(radius.third**2) / (stroke * motor.lobes**3) ** 2,

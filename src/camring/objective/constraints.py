@@ -2,13 +2,15 @@
 
 An upper limit gives `(value - limit)/|limit|`, a lower one its mirror; the
 margin against cavitation is counted in pressure drops and that against
-lift-off in pressure forces (model.md section 8). A limit that is not set is
+lift-off in pressure forces (docs/theory.md section 8). A limit that is not set is
 not a constraint; chamber volume must always be positive.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import jax.numpy as jnp
+from jax.tree_util import register_dataclass
 from jaxtyping import Array, Float
 
 from camring.metrics.summary import Metrics
@@ -21,6 +23,7 @@ UPPER_LIMITS = {
     "max_velocity": "max_velocity",
     "max_acceleration": "max_acceleration",
     "max_jerk": "max_jerk",
+    "max_case_temperature_rise": "case_temperature_rise",
 }
 """Constraint name to the result it bounds from above."""
 
@@ -28,6 +31,7 @@ LOWER_LIMITS = {
     "min_undercut_factor": "min_undercut_factor",
     "min_damping_ratio": "damping_ratio",
     "min_mean_torque": "mean_torque",
+    "min_l10_life": "l10_life",
 }
 """Constraint name to the result it bounds from below."""
 
@@ -38,10 +42,22 @@ BANDS = {
 }
 """Constraint name to the results its lower and upper end bound."""
 
+OF_ALL_LOBES = "displacement"
+"""The band that asks nothing of an operating point at which lobes idle."""
 
+
+@register_dataclass
 @dataclass(frozen=True)
 class Constraints:
-    """Limits in SI; `None` is no limit. `min_pressure` defaults to the vapour pressure."""
+    """Limits in SI; `None` is no limit. `min_pressure` defaults to the vapour pressure.
+
+    docs/theory.md section 8 has the `g` of each.
+
+    Examples
+    --------
+    >>> camring.Constraints(max_pressure=420e5, stroke=(0.010, 0.016)).names()
+    ('min_pressure', 'chamber_volume', 'max_pressure', 'stroke_low', 'stroke_high')
+    """
 
     min_pressure: float | None = None
     max_pressure: float | None = None
@@ -52,8 +68,10 @@ class Constraints:
     max_velocity: float | None = None
     max_acceleration: float | None = None
     max_jerk: float | None = None
+    max_case_temperature_rise: float | None = None
     min_damping_ratio: float | None = None
     min_mean_torque: float | None = None
+    min_l10_life: float | None = None
     displacement: tuple[float, float] | None = None
     stroke: tuple[float, float] | None = None
     lift: tuple[float, float] | None = None
@@ -85,10 +103,8 @@ def violations(
 ) -> dict[str, Float[Array, ""]]:
     """Each constraint's `g`, the worst over the operating points; `g <= 0` holds."""
     each = [
-        _at_point(constraints, system, drop, results)
-        for drop, results in zip(
-            (point.pressure_drop for point in system.operating_points), metrics, strict=True
-        )
+        at_point(constraints, system, point.pressure_drop, results, bool(point.idle_lobes))
+        for point, results in zip(system.operating_points, metrics, strict=True)
     ]
     return {
         name: jnp.max(jnp.stack([found[name] for found in each]), axis=0)
@@ -96,19 +112,33 @@ def violations(
     }
 
 
-def _at_point(
-    constraints: Constraints, system: System, drop: Float[Array, ""], metrics: Metrics
+def at_point(
+    constraints: Constraints,
+    system: System,
+    drop: Float[Array, ""],
+    metrics: Metrics,
+    reduced: bool = False,
 ) -> dict[str, Float[Array, ""]]:
-    motor = system.motor
+    """Each constraint's `g` at one operating point, of which only the pressure drop counts.
+
+    Where it is negative the machine brakes, and a least mean torque is that of braking.
+    Plain arithmetic: results and pressure drop may be numbers or arrays of any one shape.
+
+    Parameters
+    ----------
+    reduced
+        Whether lobes idle; the band of displacement is that of all lobes and holds then.
+    """
+    motor, size = system.motor, abs(drop)
     vapour, wanted = system.fluid.vapour_pressure, constraints.min_pressure
     least = vapour if wanted is None else jnp.asarray(wanted)
     found = {
-        "min_pressure": (least - metrics.min_pressure) / drop,
+        "min_pressure": (least - metrics.min_pressure) / size,
         "chamber_volume": -metrics.min_volume / motor.dead_volume,
     }
     if constraints.min_contact_force is not None:
         short = constraints.min_contact_force - metrics.min_contact_force
-        found["min_contact_force"] = short / (motor.piston.area * drop)
+        found["min_contact_force"] = short / (motor.piston.area * size)
     for name, result in UPPER_LIMITS.items():
         limit = getattr(constraints, name)
         if limit is not None:
@@ -116,14 +146,25 @@ def _at_point(
     for name, result in LOWER_LIMITS.items():
         limit = getattr(constraints, name)
         if limit is not None:
-            found[name] = (limit - getattr(metrics, result)) / (abs(limit) or 1.0)
+            value = getattr(metrics, result)
+            if result == "mean_torque":
+                value = value * drop / size
+            found[name] = (limit - value) / _size(limit, 1.0)
     for name, (lowest, highest) in BANDS.items():
         band = getattr(constraints, name)
         if band is not None:
             low, high = band
-            found[f"{name}_low"] = (low - getattr(metrics, lowest)) / (abs(low) or high - low)
-            found[f"{name}_high"] = (getattr(metrics, highest) - high) / (abs(high) or high - low)
+            found[f"{name}_low"] = (low - getattr(metrics, lowest)) / _size(low, high - low)
+            found[f"{name}_high"] = (getattr(metrics, highest) - high) / _size(high, high - low)
+            if reduced and name == OF_ALL_LOBES:
+                for end in ("low", "high"):
+                    found[f"{name}_{end}"] = -jnp.ones_like(found[f"{name}_{end}"])
     return found
+
+
+def _size(limit: Any, otherwise: Any) -> Any:
+    """What a limit is compared with: itself, unless it is zero; of numbers as of arrays."""
+    return abs(limit) + (limit == 0) * otherwise
 
 
 def penalty(found: dict[str, Float[Array, "*batch"]], factor: float) -> Float[Array, "*batch"]:

@@ -5,7 +5,7 @@ cam. Points are coordinates in [0, 1]; the given system lies inside the box.
 """
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import equinox as eqx
@@ -23,7 +23,8 @@ DocumentValue = float | list[float] | list[list[float]]
 def leaf(path: str) -> Callable[[System], Array]:
     """The function that takes the leaf at a path, `motor.piston.bore`, out of a system.
 
-    A whole number in it is a place: `operating_points.0.shaft_speed`.
+    A whole number in it is a place: `operating_points.0.shaft_speed`. The function raises
+    AttributeError for a system that does not have it.
     """
     parts = path.split(".")
 
@@ -31,9 +32,19 @@ def leaf(path: str) -> Callable[[System], Array]:
         here: Any = system
         for part in parts:
             here = here[int(part)] if part.isdigit() else getattr(here, part)
+        if here is None:
+            raise AttributeError(f"this system has no {path}")
         return here
 
     return take
+
+
+def with_leaves(system: System, paths: Iterable[str], new: Callable[[Array], Array]) -> System:
+    """The system with the leaves at some paths replaced by a function of what was there."""
+    for path in paths:
+        given = leaf(path)(system)
+        system = eqx.tree_at(leaf(path), system, jnp.asarray(new(given), given.dtype))
+    return system
 
 
 class Variable(eqx.Module):
@@ -62,11 +73,10 @@ class Variable(eqx.Module):
     def apply(self, system: System, unit: ArrayLike) -> System:
         """The system with this coordinate at `unit`."""
         reached = self.low + unit * (self.high - self.low)
-        for path in (path for paths in self.leaves for path in paths):
-            given = leaf(path)(system)
-            value = given * (1 + reached) if self.relative else reached
-            system = eqx.tree_at(leaf(path), system, jnp.asarray(value, given.dtype))
-        return system
+        paths = (path for paths in self.leaves for path in paths)
+        return with_leaves(
+            system, paths, lambda given: given * (1 + reached) if self.relative else reached
+        )
 
     def locate(self, system: System) -> Float[Array, ""]:
         """The coordinate of the given system."""
@@ -83,9 +93,9 @@ class AbstractSpace(eqx.Module):
         """A name for each coordinate."""
 
     @property
-    @abstractmethod
     def dimension(self) -> int:
         """How many coordinates there are."""
+        return len(self.names)
 
     @abstractmethod
     def apply(self, system: System, unit_point: ArrayLike) -> System:
@@ -97,6 +107,15 @@ class DesignSpace(AbstractSpace):
 
     Every method takes that system, so a space is only the statement of what
     may change and by how much.
+
+    Examples
+    --------
+    >>> file = camring.read_motor_file("motor.toml")
+    >>> file.design_space.names, file.design_space.locate(file.system).round(6).tolist()
+    (('motor.valve_plate.shift', 'motor.dead_volume'), [0.5, 0.5])
+    >>> larger = file.design_space.apply(file.system, [0.5, 1.0])
+    >>> round(float(larger.motor.dead_volume) * 1e6, 3)  # cm3
+    6.0
     """
 
     variables: tuple[Variable, ...] = ()
@@ -108,10 +127,6 @@ class DesignSpace(AbstractSpace):
         """A name for each coordinate."""
         names = tuple(variable.name for variable in self.variables)
         return names + (self.cam.names if self.cam is not None else ())
-
-    @property
-    def dimension(self) -> int:
-        return len(self.names)
 
     def apply(self, system: System, unit_point: ArrayLike) -> System:
         """The system of one design; traceable, differentiable, batched with `vmap`.
@@ -164,4 +179,12 @@ class DesignSpace(AbstractSpace):
         return values
 
 
-__all__ = ["AbstractSpace", "CamModes", "DesignSpace", "Variable", "control_values", "leaf"]
+__all__ = [
+    "AbstractSpace",
+    "CamModes",
+    "DesignSpace",
+    "Variable",
+    "control_values",
+    "leaf",
+    "with_leaves",
+]

@@ -1,6 +1,6 @@
 """How objective and constraints change with the design, exactly.
 
-A cycle at hand is differentiated by one Newton step (`physics.cycle.neighbour`), for
+A cycle at hand is differentiated by one Newton step (`physics.heat.simulation.neighbour`), for
 all variables at once in forward mode: nothing is solved again, and a variable costs
 a fraction of a simulation. The slopes are those of the discrete model, free of any
 step. At a kink (a window's edge that passes a knot, another operating point that
@@ -19,11 +19,12 @@ from jaxtyping import Array, Float
 from camring.metrics.summary import Metrics, summarise
 from camring.numerics.quantity import ArrayLike
 from camring.objective.design_space import AbstractSpace
-from camring.objective.objective import Goal, judge
+from camring.objective.objective import Goal, assessment_of
 from camring.objective.terms import TERM_RESULTS
-from camring.physics.cycle import Cycle, neighbour
-from camring.physics.fluid import AbstractFluid
+from camring.physics.cycle import Cycle
+from camring.physics.heat.simulation import neighbour
 from camring.physics.motor import Motor
+from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.system import System
 
@@ -80,7 +81,7 @@ def result_slopes(
     return jax.vmap(linear)(along)
 
 
-def judged_slopes(
+def assessed_slopes(
     system: System,
     goal: Goal,
     metrics: tuple[Metrics, ...],
@@ -98,8 +99,8 @@ def judged_slopes(
     """
     sound = jnp.zeros(len(metrics), int)
 
-    def judged(system: System, metrics: tuple[Metrics, ...]) -> tuple[Array, dict[str, Array]]:
-        found = judge(system, goal, metrics, sound)
+    def assessed(system: System, metrics: tuple[Metrics, ...]) -> tuple[Array, dict[str, Array]]:
+        found = assessment_of(system, goal, metrics, sound)
         return found.physical_objective, found.constraints
 
     nothing = jnp.zeros_like(next(iter(slopes[0].values())))
@@ -107,5 +108,5 @@ def judged_slopes(
         Metrics(**{each.name: found.get(each.name, nothing) for each in fields(Metrics)})
         for found in slopes
     )
-    _, linear = jax.linearize(judged, system, metrics)
+    _, linear = jax.linearize(assessed, system, metrics)
     return Slopes(*jax.vmap(linear)(along, whole))

@@ -1,7 +1,7 @@
 """Designs that a page of theory gives: zero-ripple cams with matching port timing.
 
 They need no evaluation to be written down, so a search may begin with them:
-spline cams whose geometric torque ripple is zero (model.md section 11), and
+spline cams whose geometric torque ripple is zero (docs/theory.md section 11), and
 windows that open and close where ideal commutation would, ahead by none, half
 or all of the angle that pre-compression of the oil takes.
 """
@@ -190,7 +190,9 @@ def ideal_edges(system: System, share: float) -> Float[np.ndarray, " edge"]:
     angles = pitch * np.arange(2048) / 2048
     radius = np.asarray(jax.jit(lambda at: cam.pitch_radius(at).value)(angles))
     inner, outer = angles[np.argmin(radius)], angles[np.argmax(radius)]
-    drop = float(np.mean([float(point.pressure_drop) for point in system.operating_points]))
+    # Where it brakes, the high pressure comes from the return: nothing is gained by closing early.
+    drops = [max(float(point.pressure_drop), 0.0) for point in system.operating_points]
+    drop = float(np.mean(drops))
     mean = float(np.mean([float(point.supply_pressure) for point in system.operating_points]))
     modulus = float(fluid.bulk_modulus_at(jnp.asarray(mean)))
     area, dead = float(motor.piston.area), float(motor.dead_volume)

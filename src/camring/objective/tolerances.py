@@ -14,7 +14,7 @@ from jaxtyping import Array, Float
 
 from camring.geometry.cam import RadialCam
 from camring.numerics.quantity import ArrayLike, Q, real
-from camring.objective.design_space import AbstractSpace, DesignSpace, leaf
+from camring.objective.design_space import AbstractSpace, DesignSpace, with_leaves
 from camring.physics.system import System
 
 
@@ -39,11 +39,11 @@ class Deviation(eqx.Module):
     def apply(self, system: System, amount: ArrayLike) -> System:
         """The system so many standard deviations away."""
         change = self.deviation * amount
-        for path in self.leaves:
-            given = leaf(path)(system)
-            value = given * (1 + change) if self.relative else given + change
-            system = eqx.tree_at(leaf(path), system, jnp.asarray(value, given.dtype))
-        return system
+        return with_leaves(
+            system,
+            self.leaves,
+            lambda given: given * (1 + change) if self.relative else given + change,
+        )
 
 
 class Waviness(eqx.Module):
@@ -123,10 +123,6 @@ class ToleratedSpace(AbstractSpace):
         orders = self.waviness.orders if self.waviness is not None else ()
         waves = tuple(f"{kind} of order {each}" for each in orders for kind in ("cosine", "sine"))
         return designed + tuple(each.name for each in self.deviations) + waves
-
-    @property
-    def dimension(self) -> int:
-        return len(self.names)
 
     def apply(self, system: System, unit_point: ArrayLike) -> System:
         """The system of one built motor; traceable, differentiable, batched with `vmap`.

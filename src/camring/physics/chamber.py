@@ -16,6 +16,8 @@ class Chamber(NamedTuple):
     return_area: Q[Float[Array, "*grid"], "m2"]
     volume: Q[Float[Array, "*grid"], "m3"]
     volume_slope: Q[Float[Array, "*grid"], "m3/rad"]
+    idle_area: Q[Float[Array, "*grid"], "m2"] | None = None
+    """Of supply windows that lead to the return; None where no lobe idles."""
 
 
 def chamber_between(
@@ -50,9 +52,16 @@ def chamber_at(
 ) -> Chamber:
     """Openings and volume of the chamber whose piston stands at each angle."""
     plate, area = motor.valve_plate, motor.piston.area
+    supply, back = plate.opening(plate.supply, angle), plate.opening(plate.return_, angle)
+    idle_area = None
+    if plate.idle_lobes:
+        # A window of its own: laminar flow through two is not that through both areas in one.
+        idle = plate.idle_share(plate.supply, angle)
+        supply, idle_area = supply * (1 - idle), plate.area_of(plate.supply) * supply * idle
     return Chamber(
-        plate.port_area * plate.opening(plate.supply, angle),
-        plate.port_area * plate.opening(plate.return_, angle),
+        plate.area_of(plate.supply) * supply,
+        plate.area_of(plate.return_) * back,
         motor.dead_volume + area * (radius.value - reference),
         area * radius.first,
+        idle_area,
     )

@@ -15,7 +15,7 @@ from camring.numerics.spline import Jet
 def normal_force(
     force: Q[Float[Array, "*grid"], "N"], radius: Jet
 ) -> Q[Float[Array, "*grid"], "N"]:
-    """Contact force along the normal, `F / cos(phi)`. model.md section 4."""
+    """Contact force along the normal, `F / cos(phi)`. docs/theory.md section 4."""
     return force * jnp.sqrt(1 + (radius.first / radius.value) ** 2)
 
 
@@ -29,7 +29,7 @@ def hertz_stress(
 
     `sigma = sqrt(max(F_n, 0) E' / (pi Lc R'))`, `R' = Rf (1 + kappa Rf)`: the
     ring is concave, so it lies closer to the roller than a plane would
-    (model.md section 4; Johnson 1985, eq. 4.45). Meaningless once the undercut
+    (docs/theory.md section 4; Johnson 1985, eq. 4.45). Meaningless once the undercut
     factor is not positive; infinite there.
     """
     factor = undercut_factor(radius, roller.radius)

@@ -1,7 +1,7 @@
 """The derivation's small-signal model of a chamber, about a nominal point.
 
 `dP~/dt + (beta Ch/V) P~ = -(beta Ap/V) ds~/dt` with all conductance in one
-number `Ch`: a high-pass from lift to pressure (model.md section 7). It says
+number `Ch`: a high-pass from lift to pressure (docs/theory.md section 7). It says
 how a stiff chamber turns motion into pressure; it does not know that the ports
 open and close.
 """
@@ -11,8 +11,8 @@ import jax.numpy as jnp
 from jaxtyping import Array, Complex, Float
 
 from camring.numerics.quantity import Q, real
-from camring.physics.fluid import AbstractFluid
 from camring.physics.motor import Motor
+from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.operating_point import OperatingPoint
 
 
@@ -43,12 +43,13 @@ class LinearChamber(eqx.Module):
 def port_conductance(
     motor: Motor, fluid: AbstractFluid, mean_flow: Q[Float[Array, ""], "m3/s"]
 ) -> Q[Float[Array, ""], "m3/(s.Pa)"]:
-    """`Cf = -dQ/dP` of one fully open port at the drop that passes the mean flow.
+    """`Cf = -dQ/dP` of one fully open supply port at the drop that passes the mean flow.
 
     With the smooth law `Q = K x/(x^2 + p^2)^(1/4)` both the drop and the slope
     are closed forms.
     """
-    gain = motor.orifice.gain(motor.valve_plate.port_area, fluid)
+    port = motor.valve_plate.supply
+    gain = motor.orifice_of(port).gain(motor.valve_plate.area_of(port), fluid)
     transition = fluid.transition_pressure
     # notation: x^2 solves x^4 = (Q/K)^4 (x^2 + p^2)
     fourth = (mean_flow / gain) ** 4
@@ -66,7 +67,7 @@ def linear_chamber(
 ) -> LinearChamber:
     """The chamber linearised about mean volume and the mean flow of an open port."""
     middle = (point.supply_pressure + point.return_pressure) / 2
-    leakage = motor.leakage_conductance(fluid)
+    leakage = motor.leakage_conductance(fluid, middle, point.case_pressure)
     return LinearChamber(
         volume=mean_volume,
         piston_area=motor.piston.area,

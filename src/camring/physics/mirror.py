@@ -5,6 +5,8 @@ mirror image of a motor, turned forwards, answers instead: at the opposite angle
 flows are the motor's own and its torque is the motor's with the other sign.
 """
 
+from dataclasses import replace
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Shaped
@@ -20,13 +22,13 @@ def has_mirror_image(motor: Motor) -> bool:
 
     A notch lies at the opening edge, and would have to lie at the closing edge.
     """
-    return motor.valve_plate.notch is None and isinstance(motor.cam, RadialCam | PlanarCam)
+    return not motor.valve_plate.notched and isinstance(motor.cam, RadialCam | PlanarCam)
 
 
 def mirrored(motor: Motor) -> Motor:
     """The motor with cam and valve plate reflected in the line of angle 0.
 
-    For a motor that `has_mirror_image`; with a radial cam lanes may lie along the last axis.
+    For a motor that `has_mirror_image`; with a radial cam a batch may lie along the last axis.
     """
     return eqx.tree_at(
         lambda each: (each.cam, each.valve_plate),
@@ -53,6 +55,8 @@ def _backwards(values: Shaped[Array, " control"]) -> Shaped[Array, " control"]:
 
 
 def _mirrored_plate(plate: ValvePlate) -> ValvePlate:
+    idle = tuple(sorted(-lobe % plate.lobes for lobe in plate.idle_lobes))
+    plate = replace(plate, idle_lobes=idle)
     places = (-plate.supply.centre, -plate.return_.centre, -plate.shift)
     return eqx.tree_at(
         lambda each: (each.supply.centre, each.return_.centre, each.shift, each.window),

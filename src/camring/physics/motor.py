@@ -1,6 +1,7 @@
 """The motor: its hardware and the laws that hold in it."""
 
 from math import gcd, lcm
+from operator import attrgetter
 from typing import Literal
 
 import equinox as eqx
@@ -12,14 +13,18 @@ from jaxtyping import Array, Float
 from camring.geometry.cam import AbstractCam
 from camring.geometry.material import Material
 from camring.geometry.piston import Piston, Roller
-from camring.geometry.valve_plate import ValvePlate
+from camring.geometry.valve_plate import Port, ValvePlate
 from camring.numerics.mesh import LAYER_ELEMENTS, Breakpoints
 from camring.numerics.quantity import Q, real
-from camring.physics.fluid import AbstractFluid
-from camring.physics.friction import AbstractFriction
-from camring.physics.gallery import Manifold
-from camring.physics.gap import PistonGap
-from camring.physics.leakage import AbstractLeakage
+from camring.numerics.readable import readable
+from camring.physics.friction import AbstractFriction, SlidingContacts
+from camring.physics.gap import PistonGap, PlateFlows, PlateGap
+from camring.physics.heat.thermal import Thermal
+from camring.physics.leakage import AbstractLeakage, LeakageEnds
+from camring.physics.manifold.manifold import Manifold
+from camring.physics.oil.churning import Churning
+from camring.physics.oil.fluid import AbstractFluid
+from camring.physics.operating_point import OperatingPoint
 from camring.physics.orifice import AbstractOrifice
 
 SAME_ANGLE = 1e-9
@@ -29,9 +34,15 @@ SAME_ANGLE = 1e-9
 class Motor(eqx.Module):
     """A radial-piston motor: `pistons` in a block that turns inside a ring of `lobes`.
 
-    Housing, ring and valve plate stand still (model.md section 1). Every number
+    Housing, ring and valve plate stand still (docs/theory.md section 1). Every number
     is an array leaf, so a batch of motors is a `Motor` whose leaves have a
     leading axis; the counts are static.
+
+    Examples
+    --------
+    >>> motor = camring.read_motor_file("motor.toml").system.motor
+    >>> motor.pistons, motor.lobes, round(1e6 * float(motor.dead_volume), 6)  # cm3
+    (8, 6, 5.0)
     """
 
     cam: AbstractCam
@@ -46,6 +57,14 @@ class Motor(eqx.Module):
     gap: PistonGap | None = None
     manifold: Manifold | None = None
     """None where the supply windows see the set pressure itself."""
+    return_manifold: Manifold | None = None
+    """None where the return windows do."""
+    plate_gap: PlateGap | None = None
+    """None where no oil passes the valve plate beside the chambers."""
+    thermal: Thermal | None = None
+    """None where films and leakage have the viscosity of the oil that comes in."""
+    churning: Churning | None = None
+    """None where the block drags no oil along."""
     given_reference_radius: Q[Float[Array, ""], "m"] = eqx.field(
         converter=real, default=float("nan")
     )
@@ -55,6 +74,8 @@ class Motor(eqx.Module):
     name: str = eqx.field(static=True, default="", kw_only=True)
     from_behind: bool = eqx.field(static=True, default=False, kw_only=True)
     """Seen from the other end of the shaft, its ports exchanged; see `rotation.turned`."""
+
+    __repr__ = readable
 
     @property
     def distinct_phases(self) -> int:
@@ -72,19 +93,66 @@ class Motor(eqx.Module):
         """
         return lcm(self.pistons, self.cam.repeats)
 
-    def leakage_conductance(self, fluid: AbstractFluid) -> Q[Float[Array, ""], "m3/(s.Pa)"]:
-        """Volume flow past one piston for each pascal between chamber and case."""
-        coefficient = self.leakage.conductance(self.piston, fluid)
+    def orifice_of(self, port: Port) -> AbstractOrifice:
+        """The law of flow through one kind of port, with its own coefficient if it has one."""
+        own = port.discharge_coefficient
+        if own is None:
+            return self.orifice
+        return eqx.tree_at(attrgetter("discharge_coefficient"), self.orifice, own)
+
+    def film_oil(self, fluid: AbstractFluid) -> AbstractFluid:
+        """The oil as it is in films and leakage paths."""
+        return fluid if self.thermal is None else self.thermal.film_oil(fluid)
+
+    def leakage_flow(
+        self,
+        fluid: AbstractFluid,
+        chamber_pressure: Q[Float[Array, "*grid"], "Pa"],
+        case_pressure: Q[Float[Array, ""], "Pa"],
+    ) -> Q[Float[Array, "*grid"], "m3/s"]:
+        """Volume flow past one piston, out of its chamber into the case."""
+        ends, fluid = LeakageEnds(chamber_pressure, case_pressure), self.film_oil(fluid)
+        flow = self.leakage.flow(ends, self.piston, fluid)
         if self.gap is None:
-            return coefficient
-        return coefficient + self.gap.leakage_conductance(self.piston, fluid)
+            return flow
+        return flow + self.gap.leakage_flow(ends, self.piston, fluid)
+
+    def leakage_conductance(
+        self,
+        fluid: AbstractFluid,
+        chamber_pressure: Q[Float[Array, "*grid"], "Pa"],
+        case_pressure: Q[Float[Array, ""], "Pa"],
+    ) -> Q[Float[Array, "*grid"], "m3/(s.Pa)"]:
+        """By how much the flow past one piston rises for each pascal more in its chamber."""
+
+        def flow(pressure: Array) -> Array:
+            return self.leakage_flow(fluid, pressure, case_pressure)
+
+        pressure = jnp.asarray(chamber_pressure)
+        return jax.jvp(flow, (pressure,), (jnp.ones_like(pressure),))[1]
 
     def viscous_damping(self, fluid: AbstractFluid) -> Q[Float[Array, ""], "N.s/m"]:
         """Force against one piston's motion for each metre a second."""
+        fluid = self.film_oil(fluid)
         coefficient = self.friction.viscous_damping(self.piston, fluid)
         if self.gap is None:
             return coefficient
         return coefficient + self.gap.film_damping(self.piston, fluid)
+
+    def contact_loss(
+        self, contacts: SlidingContacts, fluid: AbstractFluid
+    ) -> Q[Float[Array, "*grid"], "N.m"]:
+        """Torque that one piston loses in its contacts, with its share of what the block drags."""
+        lost = self.friction.loss_torque(contacts, self.piston, self.film_oil(fluid))
+        if self.churning is None:
+            return lost
+        return lost + self.churning.torque(fluid, contacts.shaft_speed) / self.pistons
+
+    def plate_flows(self, fluid: AbstractFluid, point: OperatingPoint) -> PlateFlows | None:
+        """Past the valve plate beside the chambers; None where nothing passes."""
+        if self.plate_gap is None:
+            return None
+        return self.plate_gap.flows(self.valve_plate, self.film_oil(fluid), point)
 
     def breakpoints(self) -> Breakpoints:
         """Angles in one cam period where cam or openings are not smooth.

@@ -1,18 +1,25 @@
 """Everything the reference piston does, read off a cycle at chosen angles."""
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
+from camring.numerics.quadrature import gauss_legendre
 from camring.numerics.quantity import Q
 from camring.numerics.spline import Jet, floor_past_rounding
 from camring.physics.chamber import Chamber, chamber_at, chamber_between
 from camring.physics.contact import hertz_stress, normal_force
 from camring.physics.cycle import Cycle
 from camring.physics.force import radial_force
-from camring.physics.manifold import at_supply
+from camring.physics.friction import SlidingContacts
+from camring.physics.manifold.sides import RETURN, SUPPLY, at_windows, sides_of
 from camring.physics.pressure import port_flows
 from camring.physics.torque import torque_by_virtual_work
+
+QUADRATURE_POINTS = 4
 
 
 class PistonState(eqx.Module):
@@ -23,8 +30,9 @@ class PistonState(eqx.Module):
     chamber: Chamber
     lift: Q[Float[Array, "*grid"], "m"]
     chamber_pressure: Q[Float[Array, "*grid"], "Pa"]
-    supply_pressure: Q[Float[Array, "*grid"], "Pa"]
-    """Before the supply windows; the operating point's where there is no manifold."""
+    supply_pressure: Q[Float[Array, "*grid"], "Pa"] | None
+    """In the manifold before the supply windows; None without one, as for the return."""
+    return_pressure: Q[Float[Array, "*grid"], "Pa"] | None
     supply_flow: Q[Float[Array, "*grid"], "amount/s"]
     return_flow: Q[Float[Array, "*grid"], "amount/s"]
     leakage_flow: Q[Float[Array, "*grid"], "amount/s"]
@@ -35,6 +43,30 @@ class PistonState(eqx.Module):
     torque: Q[Float[Array, "*grid"], "N.m"]
 
 
+class QuadratureSamples(NamedTuple):
+    """The reference piston at some points of every element, and the weights of its integrals."""
+
+    piston: PistonState
+    pressure_slope: Q[Float[Array, "point element"], "Pa/rad"]
+    """Slope of the solution itself, which meets the equation to solver accuracy only."""
+    weights: Float[Array, "point element *batch"]
+
+    def mean(self, values: Float[Array, "point element *batch"]) -> Float[Array, "*batch"]:
+        """Mean over a period."""
+        total = jnp.sum(self.weights * values, axis=(0, 1))
+        return total / jnp.sum(self.weights, axis=(0, 1))
+
+
+def quadrature_samples(cycle: Cycle) -> QuadratureSamples:
+    """Sample a cycle at Gauss points, where its integrals are taken."""
+    points, weights = gauss_legendre(QUADRATURE_POINTS)
+    piston = sample_elements(cycle, jnp.asarray(points))
+    slope = cycle.orbit.slope(jnp.asarray(points)) / cycle.fluid.state_slope(
+        piston.chamber_pressure
+    )
+    return QuadratureSamples(piston, slope, jnp.asarray(weights)[:, None] * cycle.orbit.mesh.width)
+
+
 def sample_elements(cycle: Cycle, fraction: Float[Array, " point"]) -> PistonState:
     """The reference piston at the same fractions of every element, arrays (point, element)."""
     mesh = cycle.orbit.mesh
@@ -42,8 +74,8 @@ def sample_elements(cycle: Cycle, fraction: Float[Array, " point"]) -> PistonSta
         cycle.motor, cycle.reference_radius, mesh.start, mesh.width, fraction
     )
     angle = mesh.at(fraction)
-    before = None if cycle.gallery is None else cycle.gallery.at(fraction)
-    return piston_state(cycle, angle, radius, chamber, cycle.orbit.at(fraction), before)
+    shared = [each.at(fraction) for each in cycle.manifolds]
+    return piston_state(cycle, angle, radius, chamber, cycle.orbit.at(fraction), shared)
 
 
 def sample_angles(cycle: Cycle, angle: Q[Float[Array, "*grid"], "rad"]) -> PistonState:
@@ -64,9 +96,9 @@ def sample_located(
     angle = cycle.orbit.mesh.start[element] + offset
     radius = cycle.motor.cam.pitch_radius(angle)
     chamber = chamber_at(cycle.motor, cycle.reference_radius, angle, radius)
-    before = None if cycle.gallery is None else cycle.gallery.at_offset(element, offset)
+    shared = [each.at_offset(element, offset) for each in cycle.manifolds]
     state = cycle.orbit.at_offset(element, offset)
-    return piston_state(cycle, angle, radius, chamber, state, before)
+    return piston_state(cycle, angle, radius, chamber, state, shared)
 
 
 def piston_state(
@@ -75,26 +107,35 @@ def piston_state(
     radius: Jet,
     chamber: Chamber,
     state: Float[Array, "*grid"],
-    gallery: Float[Array, "*grid"] | None = None,
+    manifolds: Sequence[Float[Array, "*grid"]] = (),
 ) -> PistonState:
     """What follows from cam, chamber and the states of the oil at some angles."""
     motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
     pressure = fluid.pressure(state)
-    before = point.supply_pressure if gallery is None else fluid.pressure(gallery)
-    flows = port_flows(motor, fluid, at_supply(point, before), chamber, pressure)
+    at_ports = [fluid.pressure(each) for each in manifolds]
+    flows = port_flows(motor, fluid, at_windows(motor, point, at_ports), chamber, pressure)
+    found = dict(zip(sides_of(motor), at_ports, strict=True))
     damping = motor.viscous_damping(fluid)
     force = radial_force(
-        motor.piston, pressure, point.case_pressure, radius, point.shaft_speed, damping
+        motor.piston,
+        pressure,
+        point.case_pressure,
+        radius,
+        point.shaft_speed,
+        damping,
+        cycle.lowest_radius,
     )
     pressing = normal_force(force, radius)
-    lost = motor.friction.loss_torque(radius, force, pressing, motor.roller)
+    contacts = SlidingContacts(radius, force, pressing, motor.roller, point.shaft_speed)
+    lost = motor.contact_loss(contacts, fluid)
     return PistonState(
         angle=angle,
         radius=radius,
         chamber=chamber,
         lift=radius.value - cycle.reference_radius,
         chamber_pressure=pressure,
-        supply_pressure=jnp.broadcast_to(before, pressure.shape),
+        supply_pressure=found.get(SUPPLY),
+        return_pressure=found.get(RETURN),
         supply_flow=flows.supply,
         return_flow=flows.return_,
         leakage_flow=flows.leakage,

@@ -7,7 +7,8 @@ from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q
 from camring.physics.cycle import Cycle
-from camring.physics.manifold import line_flow
+from camring.physics.manifold.coupling import line_flow
+from camring.physics.manifold.sides import RETURN, SUPPLY, Side
 from camring.physics.piston_state import PistonState, sample_angles
 
 
@@ -19,7 +20,7 @@ class PortWaves(NamedTuple):
     supply_flow: Q[Float[Array, "*grid"], "m3/s"]
     """Into the motor by the supply port; with a manifold, through its line."""
     return_flow: Q[Float[Array, "*grid"], "m3/s"]
-    """Out of the motor by the return port."""
+    """Out of the motor by the return port; with a manifold, through its line."""
     case_flow: Q[Float[Array, "*grid"], "m3/s"]
     """Out of the motor past the pistons."""
 
@@ -40,14 +41,20 @@ def port_waves(cycle: Cycle, angle: Q[Float[Array, " angle"], "rad"]) -> PortWav
 def of_one_piston(cycle: Cycle, piston: PistonState) -> PortWaves:
     """A piston's share; that of the flow through a manifold's line is an equal one."""
     motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
+
+    def through(side: Side, own: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
+        """Into the motor by one kind of port."""
+        manifold = side.of(motor)
+        if manifold is None:
+            return own
+        port, pressure = side.set_pressure(point), getattr(piston, side.pressure)
+        return line_flow(manifold, fluid, port, pressure) / motor.pistons
+
     reference = jnp.maximum(point.supply_pressure, point.return_pressure)
     per_amount = 1 / fluid.content(reference)
-    supply = piston.supply_flow
-    if motor.manifold is not None:
-        supply = line_flow(motor, fluid, point, piston.supply_pressure) / motor.pistons
     return PortWaves(
         piston.torque,
-        per_amount * supply,
-        -per_amount * piston.return_flow,
+        per_amount * through(SUPPLY, piston.supply_flow),
+        -per_amount * through(RETURN, piston.return_flow),
         per_amount * piston.leakage_flow,
     )

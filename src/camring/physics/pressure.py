@@ -1,7 +1,7 @@
 """The chamber's pressure equation, one for every fluid and orifice law.
 
 Amount of oil in a chamber changes by what the two ports bring and leakage
-takes, and by the chamber's own volume (model.md sections 3 and 13):
+takes, and by the chamber's own volume (docs/theory.md sections 3 and 13):
 
     content'(P) V w dP/dtheta = m_supply + m_return - m_leak - content(P) Ap w s'
 """
@@ -12,10 +12,11 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from camring.geometry.valve_plate import Port
 from camring.numerics.quantity import Q
 from camring.physics.chamber import Chamber
-from camring.physics.fluid import AbstractFluid, OilAt
 from camring.physics.motor import Motor
+from camring.physics.oil.fluid import AbstractFluid, OilAt
 from camring.physics.operating_point import OperatingPoint
 
 
@@ -46,19 +47,24 @@ def _flows(
     pressure: Q[Float[Array, "*grid"], "Pa"],
     here: OilAt,
 ) -> PortFlows:
+    plate = motor.valve_plate
+
     def through(
-        area: Q[Float[Array, "*grid"], "m2"], port_pressure: Q[Float[Array, ""], "Pa"]
+        port: Port, area: Q[Float[Array, "*grid"], "m2"], port_pressure: Q[Float[Array, ""], "Pa"]
     ) -> Float[Array, "*grid"]:
         there = fluid.at(port_pressure)
         density = (here.density + there.density) / 2
-        flow = motor.orifice(area, port_pressure - pressure, density, fluid)
+        flow = motor.orifice_of(port)(area, port_pressure - pressure, density, fluid)
         return (here.content + there.content) / 2 * flow
 
+    back = through(plate.return_, chamber.return_area, point.return_pressure)
+    if chamber.idle_area is not None:
+        back = back + through(plate.supply, chamber.idle_area, point.return_pressure)
     in_case = fluid.at(point.case_pressure).content
-    leakage = motor.leakage_conductance(fluid) * (pressure - point.case_pressure)
+    leakage = motor.leakage_flow(fluid, pressure, point.case_pressure)
     return PortFlows(
-        through(chamber.supply_area, point.supply_pressure),
-        through(chamber.return_area, point.return_pressure),
+        through(plate.supply, chamber.supply_area, point.supply_pressure),
+        back,
         (here.content + in_case) / 2 * leakage,
     )
 
@@ -70,7 +76,7 @@ def pressure_slope(
     chamber: Chamber,
     pressure: Q[Float[Array, "*grid"], "Pa"],
 ) -> Q[Float[Array, "*grid"], "Pa/rad"]:
-    """dP/dtheta of a chamber, model.md sections 3 and 13."""
+    """dP/dtheta of a chamber, docs/theory.md sections 3 and 13."""
     here = fluid.at(pressure)
     flows = _flows(motor, fluid, point, chamber, pressure, here)
     net = (flows.supply + flows.return_ - flows.leakage) / point.shaft_speed

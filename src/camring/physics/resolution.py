@@ -10,7 +10,14 @@ class Resolution:
     `elements` counts collocation elements between the breakpoints of a lobe
     pitch, beside the one that each breakpoint brings. The default's measured
     errors stand in docs/notes/verification.md; `simulate` reports an estimate with
-    every result.
+    every result. Counts shape arrays: another one is another program to compile.
+
+    Examples
+    --------
+    >>> camring.Resolution()
+    Resolution(elements=320, refinements=3, harmonics=600, filled=1.0)
+    >>> camring.Resolution.fine().elements
+    500
     """
 
     elements: int = 320
@@ -34,12 +41,12 @@ class Resolution:
         """What `simulate_to` tries in turn; each doubles the elements."""
         return cls(), cls(elements=640), cls(elements=1280)
 
-    def second_look(self) -> "Resolution":
-        """The coarser mesh an error estimate compares with.
+    def second_solution(self, share: float = 0.7) -> "Resolution":
+        """A coarser mesh that an error estimate compares with.
 
         Seven tenths of the elements: at order four its error is four times as
         large. Half of them can be too few for the layers of a slow motor, and then
         the difference says nothing about the finer mesh. The others are left without
-        width, so that both looks are one program.
+        width, so that all resolutions are one program.
         """
-        return replace(self, filled=0.7 * self.filled)
+        return replace(self, filled=share * self.filled)

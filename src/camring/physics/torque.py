@@ -1,4 +1,4 @@
-"""Torque of one piston on the block, by two roads that must agree."""
+"""Torque of one piston on the block, in two ways that must agree."""
 
 import jax.numpy as jnp
 from jaxtyping import Array, Float
@@ -11,7 +11,7 @@ from camring.numerics.spline import Jet
 def torque_by_virtual_work(
     force: Q[Float[Array, "*grid"], "N"], radius: Jet
 ) -> Q[Float[Array, "*grid"], "N.m"]:
-    """Radial force times piston travel for each radian, `F ds/dtheta`. model.md section 4."""
+    """Radial force times piston travel for each radian, `F ds/dtheta`. docs/theory.md section 4."""
     return force * radius.first
 
 

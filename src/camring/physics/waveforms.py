@@ -21,8 +21,10 @@ class Waveforms(eqx.Module):
     jerk: Q[Float[Array, " angle"], "m/s3"]
     volume: Q[Float[Array, " angle"], "m3"]
     chamber_pressure: Q[Float[Array, " angle"], "Pa"]
-    gallery_pressure: Q[Float[Array, " angle"], "Pa"] | None
+    manifold_pressure: Q[Float[Array, " angle"], "Pa"] | None
     """Before the supply windows; None without a manifold."""
+    return_manifold_pressure: Q[Float[Array, " angle"], "Pa"] | None
+    """Behind the return windows; None without a manifold there."""
     supply_flow: Q[Float[Array, " angle"], "m3/s"]
     return_flow: Q[Float[Array, " angle"], "m3/s"]
     leakage_flow: Q[Float[Array, " angle"], "m3/s"]
@@ -54,7 +56,22 @@ def sum_over_pistons(
 def waveforms(cycle: Cycle, angle: Q[Float[Array, " angle"], "rad"]) -> Waveforms:
     """Waveforms of the reference piston, flows as volumes at supply density.
 
-    `angle` is shaft rotation, any range; the shaft's torque is over the same angle.
+    Parameters
+    ----------
+    angle
+        Shaft rotation, rad, any range, of shape (angle,); the shaft's torque is over the same.
+
+    Returns
+    -------
+    A tuple of arrays of that shape, SI: pressure, flows, forces, stress, motion, torque.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> [cycle] = camring.simulate("motor.toml")
+    >>> waves = camring.waveforms(cycle, np.linspace(0, np.pi / 3, 361))  # one lobe
+    >>> waves.torque.shape, round(float(waves.chamber_pressure.max()) / 1e5, 1)  # bar
+    ((361,), 249.1)
     """
     piston, speed = sample_angles(cycle, angle), cycle.point.shaft_speed
     per_amount = 1 / cycle.fluid.content(cycle.point.supply_pressure)
@@ -66,7 +83,8 @@ def waveforms(cycle: Cycle, angle: Q[Float[Array, " angle"], "rad"]) -> Waveform
         jerk=speed**3 * piston.radius.third,
         volume=piston.chamber.volume,
         chamber_pressure=piston.chamber_pressure,
-        gallery_pressure=None if cycle.gallery is None else piston.supply_pressure,
+        manifold_pressure=piston.supply_pressure,
+        return_manifold_pressure=piston.return_pressure,
         supply_flow=piston.supply_flow * per_amount,
         return_flow=piston.return_flow * per_amount,
         leakage_flow=piston.leakage_flow * per_amount,

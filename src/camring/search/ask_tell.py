@@ -50,7 +50,7 @@ class AskTell:
 
     @property
     def history(self) -> tuple[Evaluation, ...]:
-        """Every evaluation that was told, in order."""
+        """Every evaluation that was reported, in order."""
         return tuple(self._history)
 
     @property
@@ -63,7 +63,7 @@ class AskTell:
         return best_of(self._history, tolerance)
 
     def ask(self) -> Float[np.ndarray, " dimension"] | Stop:
-        """The next point of the unit box, the same until it is told; or why there is none."""
+        """The next point of the unit box, the same until its value is known; or why none."""
         if self._asked is None:
             answer = self._strategy.propose(self._history, self._memory, self._seed)
             if isinstance(answer, Stop):
@@ -72,7 +72,7 @@ class AskTell:
         return np.array(self._asked.point, dtype=float)
 
     def ahead(self) -> list[Float[np.ndarray, " dimension"]]:
-        """Points that come after the one last asked for, whatever is told of it."""
+        """Points that come after the one last asked for, whatever is reported of it."""
         if self._asked is None:
             return []
         return self._strategy.ahead(len(self._history) + 1, self._asked.memory)
@@ -110,7 +110,7 @@ class AskTell:
             values = np.full(self._constraint_count, np.nan)
         if len(values) != self._constraint_count:
             raise ValueError(
-                f"{len(values)} constraints were told, but the search has {self._constraint_count}"
+                f"{len(values)} constraints were given, but the search has {self._constraint_count}"
             )
         if failure is None and not np.isfinite(objective):
             failure = f"the objective is {objective}"

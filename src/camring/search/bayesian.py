@@ -9,53 +9,35 @@ expects of them: the "Kriging believer" of Ginsbourger et al. (2010), Kriging is
 well-suited to parallelize optimization.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from jaxtyping import Float
 
-from camring.search.acquisition import Criterion, Region, apart, suggest
 from camring.search.convergence import Convergence
-from camring.search.dataset import Dataset, collect
-from camring.search.learning import Learned, learn
-from camring.search.problem import (
-    AbstractStrategy,
-    Evaluation,
-    Memory,
-    Points,
-    Proposal,
-    Stop,
-)
-from camring.search.residual_mean import LeaveOneOut
-from camring.search.sampling import generator, initial_point, sobol
-from camring.search.surrogate import Surrogate, build
-from camring.search.threads import one_linear_algebra_thread
+from camring.search.learning import FEWEST_TO_LEARN_FROM, AbstractLearningSearch, Point
+from camring.search.problem import Evaluation, Memory, Proposal, Stop
+from camring.search.sampling import generator, sobol
+from camring.search.surrogate.acquisition import Criterion, Region, apart, suggest
+from camring.search.surrogate.hyper_parameters import Learned
+from camring.search.surrogate.residual_mean import LeaveOneOut
+from camring.search.surrogate.surrogate import Surrogate, build
 from camring.search.trust_region import TrustRegion
 
-Point = Float[np.ndarray, " dimension"]
-
 EXPLORE, REFINE = "explore", "refine"
-FEWEST_TO_LEARN_FROM = 3
-FEW_DIMENSIONS = 6
 USUAL_CONVERGENCE = Convergence()
 
 
 @dataclass(frozen=True)
-class Bayesian(AbstractStrategy):
+class Bayesian(AbstractLearningSearch):
     """Gaussian processes for objective and constraints, asked by a lower confidence bound.
 
     Attributes
     ----------
-    approximate
-        Cheap approximation of the objective, (k, dimension) to (k,); None when
-        there is none. It is called with only a few different k.
-    given
-        Points to evaluate first, before Sobol's.
     initial
-        Evaluations before the first surrogate, the given ones included; None
-        is 2 dimension + 2.
+        None is 2 dimension + 2.
     mode
         "separate" learns each constraint by a process of its own. "penalised"
         learns ``objective + penalty_weight sum max(0, constraint)^2`` by one: for
@@ -68,18 +50,8 @@ class Bayesian(AbstractStrategy):
         dimensions and 4 above, where most of the box is beyond reach anyway.
     model_size, fit_size
         At most so many evaluations enter the surrogate, and the likelihood.
-    batch
-        Points chosen at once, none of which knows the others' results.
-    separation
-        No point is proposed within this Euclidean distance of an earlier one.
-    tolerance
-        Violation up to which a constraint counts as satisfied.
     """
 
-    dimension: int
-    approximate: Callable[[Points], Float[np.ndarray, " points"]] | None = None
-    given: tuple[tuple[float, ...], ...] = ()
-    initial: int | None = None
     mode: Literal["separate", "penalised"] = "separate"
     penalty_weight: float = 100.0
     kappa: float = 2.0
@@ -88,18 +60,12 @@ class Bayesian(AbstractStrategy):
     convergence: Convergence | None = USUAL_CONVERGENCE
     model_size: int = 256
     fit_size: int = 256
-    batch: int = 1
     separation: float = 1e-5
-    tolerance: float = 0.0
 
-    def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
-        """The next point: of the initial design, of the whole box, or near the best."""
-        if (waiting := Proposal.waiting(memory)) is not None:
-            return waiting
-        with one_linear_algebra_thread():
-            return self._next(history, memory, seed)
-
-    def _next(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
+    def _next_batch(
+        self, history: Sequence[Evaluation], memory: Memory, seed: int
+    ) -> Proposal | Stop:
+        """Points of the initial design, of the whole box, or near the best."""
         trial = len(history)
         initial = 2 * self.dimension + 2 if self.initial is None else self.initial
         learnable = sum(not evaluation.failed for evaluation in history)
@@ -112,9 +78,10 @@ class Bayesian(AbstractStrategy):
                 return Stop(reason)
 
         best = min(history, key=self._rank)
-        learned = self._learned(history, best, memory)
+        dataset = self._dataset(history, best, self._penalty)
+        learned = self._learned(dataset, dataset.nearest(self.fit_size), best, memory)
         trusted = self._trusted(history, memory)
-        usual = self.explore_every or (2 if self.dimension <= FEW_DIMENSIONS else 4)
+        usual = self.explore_every or (2 if self._few else 4)
         period = usual if trusted.collapses == 0 else min(usual, 2)
         points: list[Point] = []
         steps: list[str] = []
@@ -142,14 +109,6 @@ class Bayesian(AbstractStrategy):
         }
         return Proposal.of_batch(points, "bayesian", kept)
 
-    def _design(self, history: Sequence[Evaluation], count: int, seed: int) -> list[Point]:
-        """Points that lean on no evaluation."""
-        taken = [one.point for one in history]
-        for place in range(len(history), len(history) + count):
-            point = initial_point(place, self.dimension, seed, self.given)
-            taken.append(self._apart([point], taken, seed))
-        return taken[len(history) :]
-
     def _rank(self, evaluation: Evaluation) -> tuple[float, float]:
         """Sorts evaluations, best first, by what this mode minimises."""
         if self.mode == "separate" or evaluation.failed:
@@ -157,21 +116,14 @@ class Bayesian(AbstractStrategy):
         excess = np.maximum(evaluation.constraints, 0.0)
         return 0.0, evaluation.objective + self.penalty_weight * float(np.sum(excess**2))
 
-    def _dataset(self, history: Sequence[Evaluation], best: Evaluation) -> Dataset:
-        weight = self.penalty_weight if self.mode == "penalised" else None
-        dataset = collect(history, best.point, weight)
-        return dataset.without_approximation() if self.approximate is None else dataset
-
-    def _learned(self, history: Sequence[Evaluation], best: Evaluation, memory: Memory) -> Learned:
-        dataset = self._dataset(history, best)
-        before = Learned.from_memory(memory["learned"]) if "learned" in memory else None
-        centre = float(dataset.objective[best.trial])
-        return learn(dataset.nearest(self.fit_size), len(history), centre, before, self.batch)
+    @property
+    def _penalty(self) -> float | None:
+        return self.penalty_weight if self.mode == "penalised" else None
 
     def _conditioned(
         self, history: Sequence[Evaluation], best: Evaluation, learned: Learned
     ) -> Surrogate:
-        dataset = self._dataset(history, best)
+        dataset = self._dataset(history, best, self._penalty)
         return build(dataset.nearest(self.model_size), learned, self.approximate)
 
     def _believed(
@@ -200,16 +152,12 @@ class Bayesian(AbstractStrategy):
         improved = any(self._rank(one) < lead for one in refined)
         return trusted.after_step(improved, refined[0].feasible(self.tolerance))
 
-    def _apart(self, wanted: Sequence[Point], taken: Sequence[Point], seed: int) -> Point:
-        """The first that is not where something was evaluated or will be; else a random one."""
-        before = np.array(taken).reshape(-1, self.dimension)
-        if apart(wanted[0], before, self.separation):
-            return wanted[0]
-        anywhere = sobol(64, self.dimension, generator(seed, len(taken), stream=1))
-        for other in (*wanted[1:], *anywhere):
-            if apart(other, before, self.separation):
-                return other
-        return anywhere[0]
+    def _elsewhere(
+        self, around: Point, before: Float[np.ndarray, "points dimension"], seed: int
+    ) -> Point:
+        anywhere = sobol(64, self.dimension, generator(seed, len(before), stream=1))
+        free = (other for other in anywhere if apart(other, before, self.separation))
+        return next(free, anywhere[0])
 
 
 def leave_one_out_errors(memory: Memory) -> tuple[str, dict[str, LeaveOneOut]]:
@@ -220,5 +168,5 @@ def leave_one_out_errors(memory: Memory) -> tuple[str, dict[str, LeaveOneOut]]:
     for part in [memory, *reversed(memory.get("memories", []))]:
         if "learned" in part:
             learned = Learned.from_memory(part["learned"])
-            return learned.mean.value, {m.value: judged for m, judged in learned.judged.items()}
+            return learned.mean.value, {m.value: scores for m, scores in learned.scores.items()}
     return "", {}

@@ -1,22 +1,24 @@
-"""What a least-squares fit says about its numbers: intervals, correlations, what is not told.
+"""What a least-squares fit says about its numbers: intervals, correlations, what is not determined.
 
 Everything follows from the residuals and their slopes at the optimum, both divided by
 the standard deviations of what was measured: the numbers are treated as if the model
 were linear near it. Source: Bates and Watts (1988), chapters 1 and 2; for what cannot be
-told apart, Belsley, Kuh and Welsch (1980), chapter 3.
+distinguished, Belsley, Kuh and Welsch (1980), chapter 3.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy.stats import chi2, norm
 from scipy.stats import t as student
 
 Matrix = Float[np.ndarray, "value number"]
 
 CORRELATED = 0.95
-"""Two numbers whose errors are correlated more strongly are not told apart."""
+"""Two numbers whose errors are correlated more strongly are not distinguished."""
 CONDITION = 30.0
 """Condition index above which a direction counts as untold (Belsley, Kuh and Welsch)."""
 SHARE = 0.5
@@ -25,6 +27,8 @@ FLAT = 1e-9
 """Of the steepest number's slopes; flatter ones are rounding."""
 SINGULAR = 1e-6
 """Of the largest singular value; smaller ones are rounding in the slopes."""
+TOO_UNLIKELY = 0.01
+"""Chance of residuals so large with the deviations known, below which these are too small."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +45,7 @@ class Confidence:
     correlation
         Of the errors of each two numbers.
     tangled
-        Places of the numbers that are not told apart, a group each.
+        Places of the numbers that are not distinguished, a group each.
     """
 
     degrees_of_freedom: int
@@ -56,7 +60,7 @@ def confidence(
     residuals: Float[np.ndarray, " value"],
     jacobian: Matrix,
     *,
-    known: bool = False,
+    known: bool | Bool[np.ndarray, " value"] = False,
     level: float = 0.95,
 ) -> Confidence:
     """Intervals of the numbers of a fit.
@@ -66,9 +70,10 @@ def confidence(
     residuals, jacobian
         Each value's residual over its standard deviation, and the derivatives of that.
     known
-        Whether the standard deviations were measured. Otherwise only their ratios count
-        and the residuals say how large they are; known ones are enlarged where the
-        residuals are larger than they allow.
+        Whether the standard deviations were measured, of all or of each value. Where none
+        was, only their ratios count and the residuals say how large they are; then, and
+        where some were not, intervals are Student's. Known ones give a normal's, and are
+        enlarged where residuals are larger than they allow.
     level
         Share of such intervals that hold the true number.
 
@@ -80,18 +85,25 @@ def confidence(
     count, numbers = jacobian.shape
     freedom = count - numbers
     if freedom < 1:
-        raise ValueError(f"{count} values leave no freedom to judge {numbers} numbers")
+        raise ValueError(f"{count} values leave no freedom to determine {numbers} numbers")
     scatter = float(np.sqrt(np.sum(residuals**2) / freedom))
-    spread = max(scatter, 1.0) if known else scatter
+    measured = np.broadcast_to(known, residuals.shape)
+    # Where some are known the others were found so that they scatter by one.
+    spread = 1.0 if np.any(measured) else scatter
+    beyond = np.sum(residuals**2) > chi2.ppf(1 - TOO_UNLIKELY, freedom)
+    if beyond:
+        spread = max(scatter, spread)
     errors, correlation, tangled = _shape(jacobian)
     with np.errstate(invalid="ignore"):  # no scatter at all, and a number that nothing tells
         errors = np.where(np.isinf(errors), np.inf, spread * errors)
-    reach = float(student.ppf((1 + level) / 2, freedom))
+    normal = bool(np.all(measured)) and not beyond
+    quantile = (1 + level) / 2
+    reach = float(norm.ppf(quantile) if normal else student.ppf(quantile, freedom))
     return Confidence(freedom, scatter, errors, reach * errors, correlation, tangled)
 
 
 def _shape(jacobian: Matrix) -> tuple[np.ndarray, np.ndarray, tuple[tuple[int, ...], ...]]:
-    """Standard errors at scatter one, correlations, and groups that are not told apart."""
+    """Standard errors at scatter one, correlations, and groups that are not distinguished."""
     count = jacobian.shape[1]
     steepness = np.linalg.norm(jacobian, axis=0)
     flat = steepness <= FLAT * np.max(steepness, initial=0.0)
@@ -129,7 +141,7 @@ def _largest(groups: Sequence[tuple[int, ...]]) -> tuple[tuple[int, ...], ...]:
     return tuple(sorted(kept))
 
 
-def told(jacobian: Matrix, widest: float) -> Bool[np.ndarray, " number"]:
+def determined(jacobian: Matrix, widest: float) -> Bool[np.ndarray, " number"]:
     """Which numbers these values can tell together, those in front preferred.
 
     Parameters
@@ -137,7 +149,7 @@ def told(jacobian: Matrix, widest: float) -> Bool[np.ndarray, " number"]:
     jacobian
         Slopes over the standard deviations that are expected.
     widest
-        Standard error up to which a number counts as told.
+        Standard error up to which a number counts as determined.
     """
     chosen: list[int] = []
     for place in range(jacobian.shape[1]):
@@ -152,14 +164,47 @@ def told(jacobian: Matrix, widest: float) -> Bool[np.ndarray, " number"]:
     return found
 
 
-def drift(residuals: Float[np.ndarray, " value"]) -> float:
+def drift(
+    residuals: Float[np.ndarray, " value"], along: Float[np.ndarray, " value"] | None = None
+) -> float:
     """How strongly residuals follow their neighbours, in standard deviations of pure chance.
 
     Von Neumann's ratio of successive differences: the order is that of something the
     residuals should not depend on. Above 3 they do.
+
+    Parameters
+    ----------
+    along
+        What the residuals are ordered by; the order they have, unless given. Values nearer
+        than `TIED` of the largest are one place, and all orders within it count alike; with
+        fewer than three places nothing can be followed.
     """
     count = len(residuals)
     if count < 3 or not np.any(residuals):
         return 0.0
-    ratio = float(np.mean(np.diff(residuals) ** 2) / np.mean(residuals**2))
+    if along is None:
+        differences = float(np.mean(np.diff(residuals) ** 2))
+    else:
+        order = np.argsort(along, kind="stable")
+        sorted_ = along[order]
+        breaks = np.flatnonzero(np.diff(sorted_) > TIED * np.max(np.abs(sorted_))) + 1
+        groups = np.split(residuals[order], breaks)
+        if len(groups) < 3:
+            return 0.0
+        differences = _mean_difference(groups) / (count - 1)
+    ratio = differences / float(np.mean(residuals**2))
     return (2 - ratio) / (2 * float(np.sqrt((count - 2) / (count**2 - 1))))
+
+
+TIED = 0.02
+"""Of the largest: how near two settings of a bench are that were meant to be one."""
+
+
+def _mean_difference(groups: Sequence[np.ndarray]) -> float:
+    """Sum of squared differences of neighbours, its mean over all orders within the groups."""
+    within = sum(2 * float(np.sum((each - each.mean()) ** 2)) for each in groups)
+    between = sum(
+        float(one.var() + other.var() + (one.mean() - other.mean()) ** 2)
+        for one, other in pairwise(groups)
+    )
+    return within + between

@@ -1,4 +1,4 @@
-"""When to stop: judged on the best so far over a window, never on consecutive trials.
+"""When to stop: decided by the best so far over a window, never on consecutive trials.
 
 Consecutive trials of a search that explores differ by design; the best so far is
 what the user gets.

@@ -1,21 +1,24 @@
 """Descent from several starts, with exact slopes: sequential quadratic programming.
 
 Constraints stay constraints. Each descent is SciPy's SLSQP (Kraft 1988) on the unit
-box, from a point of the initial design. It keeps no state of its own: at every
-proposal it is run again from its start through the evaluations in the history, up to
-the first point that is not among them, and that is the next one to evaluate. A study
-can therefore be stopped at any trial and goes on with the same bits.
+box, from a point of the initial design. What it does follows from the history alone:
+run again from its start through the evaluations known, it comes to the first point that
+is not among them, and that is the next one to evaluate. A study can therefore be
+stopped at any trial and goes on with the same bits. While the history only grows by the
+point asked for, the descent is held where it waits (`live_loop.py`) and not run again.
 """
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TypeAlias
 
 import numpy as np
 from jaxtyping import Float
 from scipy.optimize import minimize
 
+from camring.search.live_loop import Asks, HeldLoop
 from camring.search.problem import (
     AbstractStrategy,
     Evaluation,
@@ -75,6 +78,9 @@ class GradientSearch(AbstractStrategy):
     agreement: float = 1e-3
     accuracy: float = 1e-7
     tolerance: float = 0.0
+    _held: HeldLoop[Evaluation] = field(
+        default_factory=HeldLoop, init=False, repr=False, compare=False
+    )
 
     @property
     def initial(self) -> int:
@@ -146,11 +152,21 @@ class GradientSearch(AbstractStrategy):
 
     def _descended(self, history: Sequence[Evaluation], start: int) -> Point | Evaluation:
         """Where a descent wants to look next, or the best that it has found."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # that a step was clipped to the box
+            try:
+                # Of a copy: a waiting descent must not keep this strategy, which ends it, alive.
+                descent = partial(replace(self)._descent, history, start)
+                return self._held.continued(descent, history, start)
+            except Unknown as unknown:
+                return unknown.point
+
+    def _descent(self, history: Sequence[Evaluation], start: int, ask: Asks) -> Evaluation:
         known = {on_grid(each.point).tobytes(): each for each in history}
         # The objectives of the initial design do not change while a descent goes on.
         usable = [each for each in history[: self.initial] if not each.failed]
         scale = 1 / max(min(abs(each.objective) for each in usable), np.finfo(float).tiny)
-        path = _Path(known, self.slopes, scale, history[start], self.tolerance)
+        path = _Path(known, ask, self.slopes, scale, history[start], self.tolerance)
         try:
             for _ in range(ROUNDS):
                 before = path.best(self.tolerance)
@@ -160,28 +176,24 @@ class GradientSearch(AbstractStrategy):
                     break
                 if not best.feasible(self.tolerance):
                     self._towards_feasible(path, best.point)
-        except Unknown as unknown:
-            return unknown.point
         except _Stalled:
             pass
         return path.best(self.tolerance)
 
     def _round(self, path: "_Path", start: Point) -> bool:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # that a step was clipped to the box
-            found = minimize(
-                path.objective,
-                start,
-                jac=path.objective_slope,
-                bounds=[(0.0, 1.0)] * self.dimension,
-                constraints={
-                    "type": "ineq",
-                    "fun": lambda point: -path.constraints(point),
-                    "jac": lambda point: -path.constraint_slopes(point),
-                },
-                method="SLSQP",
-                options={"maxiter": STEPS, "ftol": self.accuracy},
-            )
+        found = minimize(
+            path.objective,
+            start,
+            jac=path.objective_slope,
+            bounds=[(0.0, 1.0)] * self.dimension,
+            constraints={
+                "type": "ineq",
+                "fun": lambda point: -path.constraints(point),
+                "jac": lambda point: -path.constraint_slopes(point),
+            },
+            method="SLSQP",
+            options={"maxiter": STEPS, "ftol": self.accuracy},
+        )
         return bool(found.success)
 
     def _towards_feasible(self, path: "_Path", start: Point) -> None:
@@ -206,13 +218,14 @@ class _Path:
 
     def __init__(
         self,
-        known: Mapping[bytes, Evaluation],
+        known: dict[bytes, Evaluation],
+        ask: Asks,
         slopes: Slopes,
         scale: float,
         start: Evaluation,
         tolerance: float,
     ) -> None:
-        self._known, self._slopes, self._scale = known, slopes, scale
+        self._known, self._ask, self._slopes, self._scale = known, ask, slopes, scale
         self._tolerance = tolerance
         self._lead, self._led_at = start.rank(tolerance), 0
         self.seen: list[Evaluation] = [start]
@@ -227,7 +240,7 @@ class _Path:
         within = on_grid(point)
         found = self._known.get(within.tobytes())
         if found is None:
-            raise Unknown(within)
+            found = self._known[within.tobytes()] = self._ask(within)
         if found is not self.seen[-1]:
             self.seen.append(found)
             self._require_progress(found)

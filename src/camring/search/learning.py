@@ -1,239 +1,105 @@
-"""Which hyper-parameters, warps and residual mean to use, and when to look again.
+"""What searches have in common that learn a surrogate from every evaluation, in batches."""
 
-A fit from several starts is dear and a warm one is cheap. Everything is chosen
-afresh only each time the history has grown by half; between, the objective is
-refitted every few trials from where it was, and the constraints take turns, one
-at each trial.
-"""
-
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
-from camring.search.dataset import Dataset
-from camring.search.gaussian_process import Observations, capacity_for, pad
-from camring.search.likelihood import Fitted, fit, standard_starts
-from camring.search.problem import Memory
-from camring.search.residual_mean import (
-    LeaveOneOut,
-    ResidualMean,
-    available,
-    judge,
-    observations_of,
-)
-from camring.search.rotation import fit_with_axes
-from camring.search.warp import Warp, candidate_warps
+from camring.search.problem import AbstractStrategy, Evaluation, Memory, Points, Proposal, Stop
+from camring.search.sampling import initial_point
+from camring.search.surrogate.acquisition import apart
+from camring.search.surrogate.dataset import Dataset, collect
+from camring.search.surrogate.hyper_parameters import Learned, learn
+from camring.search.threads import one_linear_algebra_thread
 
-GROWTH_TO_RELEARN = 1.5
-OBJECTIVE_REFIT_EVERY = 4  # trials
-MOST_RESTRICTION_ROWS = 128  # constraints are many, and mostly simpler than the objective
-WARM_ITERATIONS = 15
+Point = Float[np.ndarray, " dimension"]
+
+FEWEST_TO_LEARN_FROM = 3
+FEW_DIMENSIONS = 6
 
 
 @dataclass(frozen=True)
-class Learned:
-    """Choices for every output, as plain numbers that survive JSON bit by bit.
+class AbstractLearningSearch(AbstractStrategy):
+    """A batch of points at a time, chosen by a surrogate of all evaluations before it.
 
     Attributes
     ----------
-    mean
-        The residual mean of least leave-one-out error.
-    objective
-        Hyper-parameters of the objective for each residual mean.
-    judged
-        Leave-one-out error of each residual mean.
-    restrictions
-        Hyper-parameters and warp of each constraint.
-    learned_at, refitted_at
-        Number of evaluations when everything, and when the objective, was last fitted.
-    """
-
-    mean: ResidualMean
-    objective_warp: Warp
-    objective: dict[ResidualMean, Fitted]
-    judged: dict[ResidualMean, LeaveOneOut]
-    restrictions: tuple[tuple[Fitted, Warp], ...]
-    learned_at: int
-    refitted_at: int
-
-    def to_memory(self) -> Memory:
-        """As JSON-able values."""
-        return {
-            "mean": self.mean.value,
-            "objective_warp": _warp_to_list(self.objective_warp),
-            "objective": {mean.value: _fitted_to_list(f) for mean, f in self.objective.items()},
-            "leave_one_out": {m.value: [j.error, j.rho] for m, j in self.judged.items()},
-            "restrictions": [[_fitted_to_list(f), _warp_to_list(w)] for f, w in self.restrictions],
-            "learned_at": self.learned_at,
-            "refitted_at": self.refitted_at,
-        }
-
-    @staticmethod
-    def from_memory(memory: Memory) -> "Learned":
-        """The inverse of `to_memory`."""
-        return Learned(
-            mean=ResidualMean(memory["mean"]),
-            objective_warp=_warp_from_list(memory["objective_warp"]),
-            objective={
-                ResidualMean(m): _fitted_from_list(f) for m, f in memory["objective"].items()
-            },
-            judged={ResidualMean(m): LeaveOneOut(*j) for m, j in memory["leave_one_out"].items()},
-            restrictions=tuple(
-                (_fitted_from_list(f), _warp_from_list(w)) for f, w in memory["restrictions"]
-            ),
-            learned_at=memory["learned_at"],
-            refitted_at=memory["refitted_at"],
-        )
-
-
-def learn(
-    dataset: Dataset, trial: int, centre: float, before: Learned | None, batch: int = 1
-) -> Learned:
-    """Hyper-parameters for this data set, starting from what was known before.
-
-    Parameters
-    ----------
-    trial
-        How many evaluations there are in all, which sets the schedule.
-    centre
-        Value of the objective about which it may be warped: the best one.
+    approximate
+        Cheap approximation of the objective, (k, dimension) to (k,); None when there is
+        none. Whether and how far it is believed is decided by leave-one-out errors.
+    given
+        Points to evaluate first, before Sobol's.
+    initial
+        Evaluations before the first surrogate, the given ones included; None leaves it to
+        the search.
     batch
-        Trials from one call to the next.
+        Points chosen at once, none of which knows the others' results.
+    separation
+        No point is proposed within this Euclidean distance of an earlier one.
+    tolerance
+        Violation up to which a constraint counts as satisfied.
     """
-    if before is None or trial >= GROWTH_TO_RELEARN * before.learned_at:
-        return _learn_afresh(dataset, trial, centre, before)
-    return _refit(dataset, trial, before, batch)
 
+    dimension: int
+    approximate: Callable[[Points], Float[np.ndarray, " points"]] | None = None
+    given: tuple[tuple[float, ...], ...] = ()
+    initial: int | None = None
+    batch: int = 1
+    separation: float = 1e-6
+    tolerance: float = 0.0
 
-def objective_rows(mean: ResidualMean, dataset: Dataset, warp: Warp) -> Observations:
-    """What the process of the objective learns from, padded."""
-    return observations_of(mean, dataset.points, dataset.objective, dataset.approximation, warp)
+    def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
+        """The next point of the batch at hand; when it is used up, the first of a new one."""
+        if (waiting := Proposal.waiting(memory)) is not None:
+            return waiting
+        with one_linear_algebra_thread():
+            return self._next_batch(history, memory, seed)
 
+    @abstractmethod
+    def _next_batch(
+        self, history: Sequence[Evaluation], memory: Memory, seed: int
+    ) -> Proposal | Stop:
+        """The first of points chosen together."""
 
-def restriction_rows(dataset: Dataset, column: int, warp: Warp) -> Observations:
-    """What the process of one constraint learns from, padded."""
-    count = len(dataset.points)
-    basis = np.column_stack([np.ones(count), np.zeros(count)])
-    values = warp(dataset.restrictions[:, column])
-    return pad(dataset.points, values, basis, capacity_for(count))
+    @abstractmethod
+    def _elsewhere(
+        self, around: Point, before: Float[np.ndarray, "points dimension"], seed: int
+    ) -> Point:
+        """A random point where every one that was wanted has been evaluated before."""
 
+    @property
+    def _few(self) -> bool:
+        return self.dimension <= FEW_DIMENSIONS
 
-def _learn_afresh(dataset: Dataset, trial: int, centre: float, before: Learned | None) -> Learned:
-    means = available(dataset.approximation[np.isfinite(dataset.objective)])
-    known = [] if before is None else list(before.objective.values())
-    fitted, warp = _with_best_warp(
-        dataset.objective,
-        candidate_warps(dataset.objective, centre),
-        lambda tried: objective_rows(means[-1], dataset, tried),
-        known,
-    )
-    objective = {
-        mean: fitted
-        if mean is means[-1]
-        else _from_several_starts(objective_rows(mean, dataset, warp), [fitted])
-        for mean in means
-    }
-    restrictions = []
-    fewer = dataset.nearest(MOST_RESTRICTION_ROWS)
-    for column in range(fewer.restrictions.shape[1]):
-        restrictions.append(
-            _learn_restriction(
-                fewer,
-                column,
-                [] if before is None else [f for f, _ in before.restrictions[column : column + 1]],
-            )
-        )
-    learned = Learned(means[0], warp, objective, {}, tuple(restrictions), trial, trial)
-    return _judged(dataset, learned)
+    def _design(self, history: Sequence[Evaluation], count: int, seed: int) -> list[Point]:
+        """Points that lean on no evaluation; later ones go on in the same Sobol sequence."""
+        taken = [one.point for one in history]
+        for place in range(len(history), len(history) + count):
+            point = initial_point(place, self.dimension, seed, self.given)
+            taken.append(self._apart([point], taken, seed))
+        return taken[len(history) :]
 
+    def _dataset(
+        self, history: Sequence[Evaluation], best: Evaluation, penalty: float | None = None
+    ) -> Dataset:
+        """All evaluations, seen from the best; limits as a penalty in the objective if wanted."""
+        dataset = collect(history, best.point, penalty)
+        return dataset.without_approximation() if self.approximate is None else dataset
 
-def _learn_restriction(
-    dataset: Dataset, column: int, known: Sequence[Fitted]
-) -> tuple[Fitted, Warp]:
-    values = dataset.restrictions[:, column]
-    return _with_best_warp(
-        values,
-        candidate_warps(values, 0.0),
-        lambda tried: restriction_rows(dataset, column, tried),
-        known,
-    )
+    def _learned(
+        self, dataset: Dataset, near: Dataset, best: Evaluation, memory: Memory
+    ) -> Learned:
+        """Hyper-parameters from the near part of a dataset, warm from those in the memory."""
+        before = Learned.from_memory(memory["learned"]) if "learned" in memory else None
+        centre = float(dataset.objective[best.trial])
+        return learn(near, len(dataset.objective), centre, before, self.batch)
 
-
-def _with_best_warp(
-    values: Float[np.ndarray, " rows"],
-    warps: Sequence[Warp],
-    rows: Callable[[Warp], Observations],
-    known: Sequence[Fitted],
-) -> tuple[Fitted, Warp]:
-    """The warp under which the values are most likely, then a thorough fit under it."""
-    first = standard_starts(rows(warps[0]).points.shape[-1])[:1]
-
-    def log_density(warp: Warp) -> float:
-        return fit(rows(warp), first, iterations=WARM_ITERATIONS)[1] + warp.log_jacobian(values)
-
-    warp = max(warps, key=log_density) if len(warps) > 1 else warps[0]
-    return _from_several_starts(rows(warp), known), warp
-
-
-def _from_several_starts(observations: Observations, known: Sequence[Fitted]) -> Fitted:
-    dimension = observations.points.shape[-1]
-    warm = [np.array(one.parameters) for one in known if one.axes is None]
-    fitted, density = fit(observations, [*standard_starts(dimension), *warm])
-    return fit_with_axes(observations, fitted, density, known)[0]
-
-
-def _refit(dataset: Dataset, trial: int, before: Learned, batch: int) -> Learned:
-    restrictions = list(before.restrictions)
-    fewer = dataset.nearest(MOST_RESTRICTION_ROWS)
-    count = fewer.restrictions.shape[1]
-    while len(restrictions) < count:  # the first failure adds an output
-        restrictions.append(_learn_restriction(fewer, len(restrictions), []))
-    for turn in [(trial + place) % count for place in range(min(batch, count))]:
-        fitted, warp = restrictions[turn]
-        restrictions[turn] = _warm(restriction_rows(fewer, turn, warp), fitted), warp
-    learned = replace(before, restrictions=tuple(restrictions))
-    if trial < before.refitted_at + OBJECTIVE_REFIT_EVERY:
-        return learned
-    objective = {
-        mean: _warm(
-            objective_rows(mean, dataset, before.objective_warp),
-            before.objective.get(mean, before.objective[ResidualMean.PLAIN]),
-        )
-        for mean in available(dataset.approximation[np.isfinite(dataset.objective)])
-    }
-    return _judged(dataset, replace(learned, objective=objective, refitted_at=trial))
-
-
-def _warm(observations: Observations, fitted: Fitted) -> Fitted:
-    return fit(observations, [fitted.parameters], fitted.axes, WARM_ITERATIONS)[0]
-
-
-def _judged(dataset: Dataset, learned: Learned) -> Learned:
-    warp = learned.objective_warp
-    warped = warp(dataset.objective)
-    judged = {
-        mean: judge(mean, objective_rows(mean, dataset, warp), fitted.hyperparameters(), warped)
-        for mean, fitted in learned.objective.items()
-    }
-    best = min(judged, key=lambda mean: judged[mean].error)
-    return replace(learned, mean=best, judged=judged)
-
-
-def _warp_to_list(warp: Warp) -> list[float | None]:
-    return [warp.centre, warp.scale if np.isfinite(warp.scale) else None]
-
-
-def _warp_from_list(values: Sequence[float | None]) -> Warp:
-    centre, scale = values
-    return Warp(0.0 if centre is None else centre, np.inf if scale is None else scale)
-
-
-def _fitted_to_list(fitted: Fitted) -> list[list]:
-    return [list(fitted.parameters), [list(row) for row in fitted.axes or ()]]
-
-
-def _fitted_from_list(values: Sequence[Sequence]) -> Fitted:
-    parameters, axes = values
-    return Fitted(tuple(parameters), tuple(tuple(row) for row in axes) if axes else None)
+    def _apart(self, wanted: Sequence[Point], taken: Sequence[Point], seed: int) -> Point:
+        """The first that is not where something was evaluated or will be; else a random one."""
+        before = np.array(taken).reshape(-1, self.dimension)
+        for point in wanted:
+            if apart(point, before, self.separation):
+                return point
+        return self._elsewhere(wanted[0], before, seed)

@@ -60,6 +60,8 @@ class SquaresFit:
         Whether numbers and weights came to rest.
     evaluations
         Of the model.
+    slopes
+        Of the model's values there, by every number.
     """
 
     point: Point
@@ -70,6 +72,7 @@ class SquaresFit:
     confidence: Confidence
     settled: bool
     evaluations: int
+    slopes: Float[np.ndarray, "value number"]
 
 
 class _Remembered:
@@ -142,12 +145,12 @@ def fit_squares(
             settled = rests
             break
     values, slopes = asked(point)
-    told = confidence(
+    sureness = confidence(
         (values - measured) / used,
         slopes[:, free] / used[:, None],
-        known=not np.any(unknown),
+        known=~unknown,
     )
-    return SquaresFit(point, values, used, shares, free, told, settled, asked.count)
+    return SquaresFit(point, values, used, shares, free, sureness, settled, asked.count, slopes)
 
 
 def _sizes(measured: Values, group: Int[np.ndarray, " value"]) -> Values:

@@ -19,8 +19,13 @@ from camring.search.problem import (
 HOPELESS = 20  # evaluations; if the first so many all fail, something else is wrong
 
 
+def hopeless(history: Sequence[Evaluation]) -> bool:
+    """Whether it is time to stop because every evaluation so far has failed."""
+    return len(history) == HOPELESS and all(one.failed for one in history)
+
+
 @dataclass(frozen=True, eq=False)
-class Outcome:
+class SearchResult:
     """What a search found.
 
     Attributes
@@ -58,7 +63,7 @@ def minimise(
     memory: Memory | None = None,
     on_evaluation: Callable[[Evaluation, Memory], None] | None = None,
     tolerance: float = 0.0,
-) -> Outcome:
+) -> SearchResult:
     """Searches until the strategy stops or there are `budget` evaluations in all.
 
     Parameters
@@ -84,8 +89,7 @@ def minimise(
         evaluation = asking.tell(objective, constraints, failure, approximation=approximation)
         if on_evaluation is not None:
             on_evaluation(evaluation, asking.memory)
-        done = asking.history
-        if len(done) == HOPELESS and all(one.failed for one in done):
+        if hopeless(asking.history):
             reason = f"The first {HOPELESS} evaluations all failed; the last: {evaluation.failure}."
             break
-    return Outcome(asking.best(tolerance), asking.history, reason, asking.memory)
+    return SearchResult(asking.best(tolerance), asking.history, reason, asking.memory)

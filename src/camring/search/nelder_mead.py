@@ -13,15 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from camring.search.problem import (
-    AbstractStrategy,
-    Evaluation,
-    Memory,
-    Proposal,
-    Stop,
-    best_of,
-)
-from camring.search.simplex import (
+from camring.search.nelder_mead_moves import (
     Coefficients,
     along,
     diameter,
@@ -30,6 +22,14 @@ from camring.search.simplex import (
     start_simplex,
     to_angles,
     to_box,
+)
+from camring.search.problem import (
+    AbstractStrategy,
+    Evaluation,
+    Memory,
+    Proposal,
+    Stop,
+    best_of,
 )
 
 FLAT = 1e-9  # a simplex flatter than this searches a subspace only

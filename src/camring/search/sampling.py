@@ -1,6 +1,6 @@
 """Points to start from: those given, then a scrambled Sobol sequence.
 
-All chance in the search room comes from here, and from the seed and the trial
+All chance in the search package comes from here, and from the seed and the trial
 number alone.
 """
 

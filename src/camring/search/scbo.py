@@ -1,4 +1,4 @@
-"""Constrained Bayesian search in a trust region, in batches: for models that are dear.
+"""Constrained Bayesian search in a trust region, in batches: for expensive models.
 
 Of the family of TuRBO (Eriksson et al. 2019) and SCBO (Eriksson and Poloczek 2021):
 one Gaussian process for the objective and one for each constraint, under warps that
@@ -13,55 +13,50 @@ its prior mean.
 When the brick has become too small to matter, the search begins again elsewhere.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 
-from camring.search.acquisition import Criterion, Region, apart, spread_candidates, suggest
-from camring.search.dataset import collect
-from camring.search.learning import Learned, learn
-from camring.search.problem import AbstractStrategy, Evaluation, Memory, Points, Proposal, Stop
-from camring.search.sampling import generator, initial_point
-from camring.search.surrogate import Surrogate, build
-from camring.search.thompson import best_of_draw, draws
-from camring.search.threads import one_linear_algebra_thread
+from camring.search.learning import FEWEST_TO_LEARN_FROM, AbstractLearningSearch, Point
+from camring.search.problem import Evaluation, Memory, Proposal
+from camring.search.sampling import generator
+from camring.search.surrogate.acquisition import (
+    Criterion,
+    Region,
+    apart,
+    spread_candidates,
+    suggest,
+)
+from camring.search.surrogate.hyper_parameters import Learned
+from camring.search.surrogate.surrogate import Surrogate, build
+from camring.search.surrogate.thompson import best_of_draw, draws
 from camring.search.trust_region import TrustRegion
 
-Point = Float[np.ndarray, " dimension"]
-
 CANDIDATES = 512
-FEWEST_TO_LEARN_FROM = 3
 MOST_STRETCHED = 4.0  # longest over mean edge of the brick, and mean over shortest
 SURPRISING = 0.5  # deviations taken off the objective's mean by every other descent
 WORTHWHILE = 1e-4  # gain of the objective, or of the violation, relative
 SMALLEST = 0.005  # mean edge of the brick, in box widths; a smaller one begins anew elsewhere
-FEW_DIMENSIONS, EVERY_FEW, EVERY_MANY = 6, 2, 4  # one draw in so many looks at the whole box
+EVERY_FEW, EVERY_MANY = 2, 4  # one draw in so many is of the whole box
 FIRST_OF_MANY = 0.4  # edge at first, above few dimensions: a corner of a large box is far away
 MOST_DESCENTS = 3  # between two points that are none, where points are chosen one by one
-HOPEFUL, LENIENT = 2.0, -1.0  # deviations off objective and limits for a look at the whole box
+HOPEFUL, LENIENT = 2.0, -1.0  # deviations off objective and limits for a point of the whole box
 INITIAL, SEARCHING = "initial", "scbo"
-BATCH, DESCENT, DRAW, LOOK = "batch", "descent", "draw", "look"
+BATCH, DESCENT, DRAW, EXPLORATION = "batch", "descent", "draw", "look"
 
 
 @dataclass(frozen=True)
-class Scbo(AbstractStrategy):
+class Scbo(AbstractLearningSearch):
     """Batches of points: one descended to, the others drawn.
 
     Attributes
     ----------
-    approximate
-        Cheap approximation of the objective, (k, dimension) to (k,); None when there is
-        none. Whether and how far it is believed is decided by leave-one-out errors.
-    given
-        Points to evaluate first, before Sobol's.
     initial
-        Points of the initial design, the given ones included, and of each restart's;
-        None is dimension + 2, or one batch if that is more.
+        Of each restart's design, too; None is dimension + 2, or one batch if that is more.
     batch
-        Points proposed at once, none of which knows the others' results. With 1, up
-        to three descents, the more the more dimensions, are followed by a look at the
+        With 1, up to three descents, the more the more dimensions, are followed by a point of the
         whole box, or, above six dimensions, in turn by one and by a draw.
     model_size
         At most so many evaluations, mostly the nearest, enter the processes: a proposal
@@ -69,38 +64,16 @@ class Scbo(AbstractStrategy):
     patience
         Batches without a better point that halve the brick; None is half the
         dimension over the batch, at least 3.
-    separation
-        No point is proposed within this Euclidean distance of an earlier one.
-    tolerance
-        Violation up to which a constraint counts as satisfied.
     """
 
-    dimension: int
-    approximate: Callable[[Points], Float[np.ndarray, " points"]] | None = None
-    given: tuple[tuple[float, ...], ...] = ()
-    initial: int | None = None
-    batch: int = 1
     model_size: int = 192
     patience: int | None = None
-    separation: float = 1e-6
-    tolerance: float = 0.0
-
-    def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
-        """The next point of the batch at hand; when it is used up, the first of a new one."""
-        if (waiting := Proposal.waiting(memory)) is not None:
-            return waiting
-        with one_linear_algebra_thread():
-            return self._batch(history, memory, seed)
-
-    @property
-    def _few(self) -> bool:
-        return self.dimension <= FEW_DIMENSIONS
 
     @property
     def _descents(self) -> int:
         return min(max(self.dimension // 2, 1), MOST_DESCENTS)
 
-    def _batch(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal:
+    def _next_batch(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal:
         trial = len(history)
         since, region = memory.get("since", 0), self._region(history, memory)
         if region.collapses > memory.get("collapses", 0):
@@ -129,15 +102,6 @@ class Scbo(AbstractStrategy):
         wanted = self.dimension + 2 if self.initial is None else self.initial
         return max(wanted, self.batch, len(self.given), FEWEST_TO_LEARN_FROM)
 
-    def _design(self, history: Sequence[Evaluation], count: int, seed: int) -> list[Point]:
-        """Points that lean on no evaluation; a restart goes on in the same Sobol sequence."""
-        places = range(len(history), len(history) + count)
-        wanted = [initial_point(place, self.dimension, seed, self.given) for place in places]
-        found: list[Point] = []
-        for point in wanted:
-            found.append(self._apart([point], history, found, seed))
-        return found
-
     def _region(self, history: Sequence[Evaluation], memory: Memory) -> TrustRegion:
         """The brick after what the last batch brought."""
         if memory.get("phase") != SEARCHING:
@@ -149,7 +113,7 @@ class Scbo(AbstractStrategy):
         # A gain that is none to speak of does not keep a brick from collapsing.
         worth = (infeasible, value - WORTHWHILE * abs(value))
         improved = min(one.rank(self.tolerance) for one in batch) < worth
-        if memory.get("kind") == LOOK:
+        if memory.get("kind") == EXPLORATION:
             region = TrustRegion(**memory["region"])
             return region.after_discovery() if improved else region
         patience = self.patience or max(3, -(-self.dimension // (2 * self.batch)))
@@ -169,19 +133,14 @@ class Scbo(AbstractStrategy):
         turn, rest = divmod(place, self._descents + 1)
         if rest < self._descents:
             return DESCENT
-        return LOOK if self._few or turn % 2 else DRAW
+        return EXPLORATION if self._few or turn % 2 else DRAW
 
     def _surrogate(
         self, history: Sequence[Evaluation], best: Evaluation, memory: Memory
     ) -> Surrogate:
-        dataset = collect(history, best.point)
-        if self.approximate is None:
-            dataset = dataset.without_approximation()
-        before = Learned.from_memory(memory["learned"]) if "learned" in memory else None
-        centre = float(dataset.objective[best.trial])
+        dataset = self._dataset(history, best)
         near = dataset.nearest(self.model_size)
-        learned = learn(near, len(history), centre, before, self.batch)
-        return build(near, learned, self.approximate)
+        return build(near, self._learned(dataset, near, best, memory), self.approximate)
 
     def _points(
         self,
@@ -196,7 +155,7 @@ class Scbo(AbstractStrategy):
         region = trusted.around(centre, self._shape(surrogate.learned))
         turn = trial // self.batch
         criterion, starts = Criterion(SURPRISING * (turn % 2), trusted.caution), 1
-        if kind == LOOK:
+        if kind == EXPLORATION:
             region = Region.everything(self.dimension)
             turn = trial // (self._descents + 1)
             criterion, starts = Criterion(HOPEFUL * (1 + turn % 2), LENIENT), 2
@@ -205,7 +164,8 @@ class Scbo(AbstractStrategy):
             suggestions = suggest(
                 surrogate, region, criterion, centre, generator(seed, trial), starts
             )
-            found.append(self._apart([each.point for each in suggestions], history, found, seed))
+            taken = [one.point for one in history]
+            found.append(self._apart([each.point for each in suggestions], taken, seed))
         if len(found) < self.batch:
             only_here = kind == DRAW
             found += self._drawn(history, surrogate, region, centre, found, turn, seed, only_here)
@@ -238,7 +198,8 @@ class Scbo(AbstractStrategy):
             scale = np.maximum(np.std(many, axis=(0, 1)), 1e-300)
             for drawn in many:
                 ranked = candidates[best_of_draw(drawn, scale)]
-                found.append(self._apart(list(ranked), history, [*before, *found], seed))
+                taken = [*(one.point for one in history), *before, *found]
+                found.append(self._apart(list(ranked), taken, seed))
         return found
 
     def _shape(self, learned: Learned) -> Point:
@@ -249,23 +210,13 @@ class Scbo(AbstractStrategy):
         shape = np.exp(np.mean(np.log(along))) / along
         return np.clip(shape, 1 / MOST_STRETCHED, MOST_STRETCHED)
 
-    def _apart(
-        self,
-        wanted: Sequence[Point],
-        history: Sequence[Evaluation],
-        batch: Sequence[Point],
-        seed: int,
+    def _elsewhere(
+        self, around: Point, before: Float[np.ndarray, "points dimension"], seed: int
     ) -> Point:
-        """The first that is not where something was evaluated or will be; else a random one."""
-        taken = np.array([*(one.point for one in history), *batch]).reshape(-1, self.dimension)
-        for point in wanted:
-            if apart(point, taken, self.separation):
-                return point
-        random = generator(seed, len(history) + len(batch), 1)
-        around = wanted[0]
+        random = generator(seed, len(before), stream=1)
         for width in 2.0 ** np.arange(-16, 1):
             step = width * (random.random(self.dimension) - 0.5)
             point = np.clip(around + step, 0.0, 1.0)
-            if apart(point, taken, self.separation):
+            if apart(point, before, self.separation):
                 return point
         return random.random(self.dimension)

@@ -9,8 +9,8 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from camring.search.acquisition import Region
 from camring.search.problem import Memory
+from camring.search.surrogate.acquisition import Region
 
 LARGEST = 1.6  # box widths: the whole box from any point near its middle
 SMALLEST = 1e-3

@@ -12,10 +12,10 @@ import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 from jax import lax
-from native_roads import LANES, assert_same, rows
+from machine_code import LANES, assert_same, rows
 
-from camring.numerics.lanes import take
-from camring.numerics.native.graph import NotInLanes
+from camring.compiler.graph import NotInLanes
+from camring.numerics.batch import take
 from camring.numerics.once import computed_once
 
 ROWS = (1, 4, 6, 12)

@@ -5,8 +5,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from camring.numerics.native.elementary import ELEMENTARY, LARGEST_ANGLE
-from camring.numerics.native.program import NativeProgram
+from camring.compiler.elementary import ELEMENTARY, LARGEST_ANGLE
+from camring.compiler.program import NativeProgram
 from camring.numerics.quantity import real
 
 SMALLEST_NORMAL = np.finfo(float).smallest_normal
@@ -97,15 +97,15 @@ def flushed(result):
     return np.where(np.abs(result) < 2 * SMALLEST_NORMAL, 0, result)
 
 
-@pytest.mark.parametrize("road", ["jax", "machine"])
+@pytest.mark.parametrize("made_by", ["jax", "machine"])
 @pytest.mark.parametrize("name", PRECISE)
-def test_a_function_is_right_to_a_few_units_in_the_last_place(name, road):
+def test_a_function_is_right_to_a_few_units_in_the_last_place(name, made_by):
     x = numbers()
     if name in ("sin", "cos", "tan"):
         x = x[~(np.abs(x) > LARGEST_ANGLE)]
         # Next to a zero an angle's own last digit is all there is of the result.
         x = x[~np.isin(np.abs(x), [np.pi, np.pi / 2])]
-    by_jax = road == "jax"
+    by_jax = made_by == "jax"
     found = jax.jit(ELEMENTARY[name])(real(x)) if by_jax else machine(by_primitive(name), x)
     expected = precise(PRECISE[name], x)
     # JAX has no numbers below the smallest normal one, nor has 1 / (1 + exp(-x)).
@@ -121,9 +121,9 @@ def test_the_smallest_numbers_have_functions_too(name):
     assert_close(machine(by_primitive(name), x), expected, UNITS.get(name, 2.0), x)
 
 
-@pytest.mark.parametrize("road", ["jax", "machine"])
+@pytest.mark.parametrize("made_by", ["jax", "machine"])
 @pytest.mark.parametrize("name", PRECISE_OF_TWO)
-def test_a_function_of_two_is_right_to_two_units_in_the_last_place(name, road):
+def test_a_function_of_two_is_right_to_two_units_in_the_last_place(name, made_by):
     rng = np.random.default_rng(1)
     all_sizes = np.exp(rng.uniform(-700, 700, (2, COUNT))) * rng.choice([-1, 1], (2, COUNT))
     pairs = [
@@ -134,16 +134,16 @@ def test_a_function_of_two_is_right_to_two_units_in_the_last_place(name, road):
         np.array([rng.uniform(-100, 100, COUNT), np.round(rng.uniform(-150, 150, COUNT))]),
         np.array([1 + rng.uniform(-1e-9, 1e-9, COUNT), rng.uniform(-1e11, 1e11, COUNT)]),
     ]
-    if road == "machine":
+    if made_by == "machine":
         pairs.append(np.array(np.meshgrid(SUBNORMAL, AWKWARD)).reshape(2, -1))
         pairs.append(np.array(np.meshgrid(AWKWARD, SUBNORMAL)).reshape(2, -1))
     first, second = np.concatenate(pairs, axis=1)
-    if road == "jax":
+    if made_by == "jax":
         found = jax.jit(ELEMENTARY[name])(real(first), real(second))
     else:
         found = machine(by_primitive(name), first, second)
     expected = precise(PRECISE_OF_TWO[name], first, second)
-    if road == "jax":
+    if made_by == "jax":
         found, expected = flushed(found), flushed(expected)
     assert_close(found, expected, 2.0, first, second)
 

@@ -5,9 +5,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import lax
-from native_roads import LANES, assert_same, both, rows
+from machine_code import LANES, assert_same, both, rows
 
-from camring.numerics.lanes import (
+from camring.compiler.graph import NotInLanes
+from camring.compiler.program import NativeProgram
+from camring.numerics.batch import (
     ascending_rows,
     interpolate,
     locate,
@@ -15,8 +17,6 @@ from camring.numerics.lanes import (
     running_total,
     take,
 )
-from camring.numerics.native.graph import NotInLanes
-from camring.numerics.native.program import NativeProgram
 from camring.numerics.once import computed_once
 
 MATRIX = np.random.default_rng(9).normal(size=(11, 7))
@@ -25,6 +25,9 @@ VIEWS = {
     "strides": lambda x: x[::3],
     "strides of a later axis": lambda x: x.reshape(3, 4, -1)[:, 1::2],
     "one row": lambda x: x[5],
+    "slice from a place": lambda x: lax.dynamic_slice_in_dim(x, 2, 5) + x[:5],
+    "slice from beyond the end": lambda x: lax.dynamic_slice_in_dim(x, 10, 5) * 2,
+    "rows put on a device": lambda x: x * jax.device_put(np.arange(12.0)[:, None]),
     "reshape": lambda x: x.reshape(3, 4, -1) * x[:4],
     "broadcast": lambda x: x[:, None] * x[None, :5],
     "broadcast of one row": lambda x: jnp.broadcast_to(x[2], (4, *x[2].shape)) + 1,
@@ -329,7 +332,7 @@ def test_rows_that_only_change_places_are_refused_or_right():
 
 
 def refused_or_both(function, *arguments):
-    """The reason why there is no code, or what both roads give."""
+    """The reason why there is no code, or what both give."""
     try:
         return both(function, *arguments)
     except NotInLanes as reason:

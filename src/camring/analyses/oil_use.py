@@ -1,0 +1,31 @@
+"""What a named oil does not change in a motor, in a sentence."""
+
+from camring.files.motor import MotorFile
+from camring.physics.viscosity_use import reads_viscosity
+
+__all__ = ["unread_viscosity"]
+
+_WAY_OUT = (
+    'give [motor.gap] with clearance and length, leakage = "viscous" in [motor], or '
+    'orifice = "laminar-turbulent" in [motor.valve_plate]'
+)
+
+
+def unread_viscosity(file: MotorFile) -> list[str]:
+    """A sentence where a file speaks of its oil's viscosity and no law of its motor reads it."""
+    fluid = file.document.get("fluid", {})
+    named = [f"fluid.{key}" for key in ("oil", "temperature") if key in fluid]
+    if file.envelope is not None and file.envelope.temperatures:
+        named.append("envelope.temperature")
+    if not named and "viscosity" not in fluid:
+        return []
+    system = file.system
+    if reads_viscosity(system.motor, system.fluid, system.operating_points[0]):
+        return []
+    if not named:
+        return [f"fluid.viscosity has no effect: no law of this motor reads it; {_WAY_OUT}."]
+    listed = ", ".join(named[:-1]) + f" and {named[-1]}" if len(named) > 1 else named[0]
+    return [
+        f"No law of this motor reads a viscosity: {listed} set density, bulk modulus and vapour "
+        f"pressure only, and leakage and friction are the same hot and cold; {_WAY_OUT}."
+    ]

@@ -1,0 +1,1 @@
+"""Cells of tables that benches and spreadsheets wrote: separators, signs, workbooks."""

@@ -1,0 +1,1 @@
+"""Shapes that come as points, drawings or angles: rings of others, relief grooves."""

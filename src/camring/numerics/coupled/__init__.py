@@ -1,0 +1,1 @@
+"""Many orbits that share a state, such as all pistons behind one manifold."""

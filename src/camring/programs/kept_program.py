@@ -1,0 +1,279 @@
+"""Programs that the next run neither traces nor compiles again.
+
+JAX keeps compiled programs under the text of the program, and to have that text it
+traces and lowers every function anew in each process: most of what a short command takes.
+Here a program is found by what it is made from: the source of this package, the versions
+of what compiles it, and a description of its arguments. Where the description would have
+to reach beyond the package (a law of a user's own), JAX does as it always does.
+
+What is kept is machine code, in the folder of `compilation_cache`, which nobody else can write,
+in files that are looked at before they are run (`kept_file`).
+"""
+
+import contextlib
+import fcntl
+import hashlib
+import inspect
+import os
+import sys
+import threading
+from collections.abc import Callable, Hashable, Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Generic, ParamSpec, Protocol, TypeVar
+from weakref import WeakSet
+
+import equinox as eqx
+import jax
+import numpy as np
+from jax.experimental.serialize_executable import deserialize_and_load, serialize
+from jaxlib import lapack
+
+from camring.programs.compilation_cache import MAKING_SUFFIX, compiles_quickly, programs_folder
+from camring.programs.description import Indescribable, described
+from camring.programs.jax_store import jax_store_unused
+from camring.programs.kept_file import SUFFIX, content_of
+from camring.programs.kept_file import write as keep
+from camring.programs.leaves import is_array, split, whole_form
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+UNOPTIMISED = {"xla_backend_optimization_level": 0}
+"""What `CAMRING_COMPILER=quick` asks of JAX's compiler."""
+
+
+class _Place:
+    """Stands in a result for one of the program's arrays."""
+
+
+class Program:
+    """Machine code between lists of arrays, and the tree that its answers belong into."""
+
+    def __init__(self, call: Callable[[list[Any]], list[Any]], result: Any) -> None:
+        self._call = call
+        self._leaves, self._structure = jax.tree.flatten(result)
+
+    def __call__(self, arrays: list[Any]) -> Any:
+        answers = iter(self._call(arrays))
+        filled = [next(answers) if isinstance(leaf, _Place) else leaf for leaf in self._leaves]
+        return jax.tree.unflatten(self._structure, filled)
+
+
+class Forgetful(Protocol):
+    """Who holds machine code that it can have again."""
+
+    def forget(self) -> None: ...
+
+
+alive: "WeakSet[Forgetful]" = WeakSet()
+
+
+def forget_programs() -> None:
+    """Those of all functions, as `jax.clear_caches` does with its own."""
+    for each in list(alive):
+        each.forget()
+
+
+class KeptProgram(Generic[Arguments, Result]):
+    """A function compiled once for a user, where `equinox.filter_jit` compiles it for a process.
+
+    Called in the same way: arrays are traced, everything else is part of the program. It
+    is just that inside another traced function, where nothing can be kept, and under JAX's
+    settings for looking for mistakes.
+
+    Parameters
+    ----------
+    function
+        Pure, and reached by its name in a module of this package.
+    compiler_options
+        As `jax.jit` takes them.
+    """
+
+    def __init__(
+        self,
+        function: Callable[Arguments, Result],
+        compiler_options: dict[str, Any] | None = None,
+    ) -> None:
+        self._function, self._options = function, compiler_options
+        self._complete = completion(function)
+        options: dict[str, Any] = {}
+        if compiler_options is not None:
+            options["compiler_options"] = compiler_options
+        self._traced = eqx.filter_jit(function, **options)
+        self._programs: dict[Hashable, Program] = {}
+        self._others: set[Hashable] = set()
+        self._busy: dict[Hashable, threading.Lock] = {}
+        alive.add(self)
+
+    def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
+        folder = programs_folder()
+        args, kwargs = self._complete(*args, **kwargs)
+        leaves, structure = jax.tree.flatten((args, kwargs))
+        found = split(leaves, whole_form) if folder else None
+        if found is None:
+            return self._traced(*args, **kwargs)
+        arrays, forms = found
+        key = structure, forms
+        program = self._programs.get(key)
+        if program is None:
+            program = self._found(key, Path(folder), (args, kwargs), arrays)
+        return self._traced(*args, **kwargs) if program is None else program(arrays)
+
+    def forget(self) -> None:
+        """Gives back the machine code that this process holds; what is on disk stays."""
+        self._programs.clear()
+
+    def _found(self, key: Hashable, folder: Path, given: Any, arrays: list[Any]) -> Program | None:
+        """From disk, or compiled and put there; None where the program is JAX's to keep."""
+        with self._busy.setdefault(key, threading.Lock()):
+            if key in self._others:
+                return None
+            if key not in self._programs:
+                try:
+                    name = program_name(self._function, given, self._effort())
+                    path = folder / f"{self._function.__name__}-{name}{SUFFIX}"
+                except Indescribable:
+                    self._others.add(key)
+                    return None
+                self._programs[key] = kept_or_made(
+                    path,
+                    lambda content: _shown_to_run(content, arrays),
+                    lambda: self._compiled(path, given, arrays),
+                )
+            return self._programs[key]
+
+    def _effort(self) -> dict[str, Any] | None:
+        return {**(self._options or {}), **UNOPTIMISED} if compiles_quickly() else self._options
+
+    def _compiled(self, path: Path, given: Any, arrays: list[Any]) -> Program:
+        function, result = between_arrays(self._function, given)
+        lowered = jax.jit(function).lower(arrays)
+        with jax_store_unused():
+            compiled = lowered.compile(compiler_options=self._effort())
+        with contextlib.suppress(Exception):  # what cannot be kept is compiled once more
+            keep(path, (*serialize(compiled), result.tree))
+        return Program(compiled, result.tree)
+
+
+def completion(function: Callable[Arguments, Any]) -> Callable[Arguments, Any]:
+    """Of a function's arguments: what is left out has its default, so that both are one program.
+
+    Raises
+    ------
+    TypeError
+        For arguments that the function does not take, like the function.
+    """
+    signature = inspect.signature(function)
+    parameters = list(signature.parameters.values())
+    plain = all(each.kind is inspect.Parameter.POSITIONAL_OR_KEYWORD for each in parameters)
+
+    def complete(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Any:
+        if plain and not kwargs and len(args) == len(parameters):
+            return args, kwargs
+        bound = signature.bind(*args, **kwargs)
+        bound.apply_defaults()
+        return bound.args, bound.kwargs
+
+    return complete
+
+
+class ResultTree:
+    """The tree of a function's result, known once the function has been traced."""
+
+    tree: Any = None
+
+
+def between_arrays(function: Callable, given: Any) -> tuple[Callable[[list], list], ResultTree]:
+    """A function of the arrays in some arguments alone, all else being part of it.
+
+    What comes back besides it is filled in when the function is traced.
+    """
+    leaves, structure = jax.tree.flatten(given)
+    result = ResultTree()
+
+    def called(chosen: list[Any]) -> list[Any]:
+        places = iter(chosen)
+        filled = [next(places) if is_array(leaf) else leaf for leaf in leaves]
+        args, kwargs = jax.tree.unflatten(structure, filled)
+        answer = function(*args, **kwargs)
+        result.tree = jax.tree.map(lambda leaf: _Place() if is_array(leaf) else leaf, answer)
+        return [leaf for leaf in jax.tree.leaves(answer) if is_array(leaf)]
+
+    called.__name__ = function.__name__  # in JAX's logs and profiles
+    return called, result
+
+
+def program_name(function: Callable, given: Any, options: object) -> str:
+    """A name for the program that some arguments need.
+
+    Raises
+    ------
+    Indescribable
+        Where the program depends on something that has no lasting name.
+    """
+    words = f"{made_with()}{described(function)}{options}{described(given)}"
+    return hashlib.sha256(words.encode()).hexdigest()[:40]
+
+
+def kept_or_made(
+    path: Path, restored: Callable[[Any], Program], made: Callable[[], Program]
+) -> Program:
+    """A program from disk or, by the first of the processes that want it, made; others wait."""
+    known = from_disk(path, restored)
+    if known:
+        return known
+    with _one_process_at_a_time(path):
+        return from_disk(path, restored) or made()
+
+
+@contextlib.contextmanager
+def _one_process_at_a_time(path: Path) -> Iterator[None]:
+    """Where files cannot be locked everyone goes ahead; the lock of who dies is free."""
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(OSError):
+            file = stack.enter_context(path.with_suffix(MAKING_SUFFIX).open("ab"))
+            fcntl.flock(file, fcntl.LOCK_EX)
+            stack.callback(path.with_suffix(MAKING_SUFFIX).unlink, missing_ok=True)
+        yield
+
+
+def from_disk(path: Path, restored: Callable[[Any], Program]) -> Program | None:
+    """A program that was kept, by what makes it of its content; None where there is none such."""
+    try:
+        return restored(content_of(path))
+    except Exception:  # whatever is wrong with a file, compiling makes a new one
+        return None
+
+
+def _shown_to_run(content: Any, arrays: list[Any]) -> Program:
+    code, inner, outer, result = content
+    if b"lapack" in code:
+        _connect_lapack()
+    program = Program(deserialize_and_load(code, inner, outer), result)
+    jax.block_until_ready(program(arrays))
+    return program
+
+
+@lru_cache(maxsize=1)
+def _connect_lapack() -> None:
+    """JAX does so when it compiles; machine code from disk would call into nothing and crash."""
+    lapack._lapack.initialize()
+
+
+@lru_cache(maxsize=1)
+def made_with() -> str:
+    """Everything besides its function and its arguments that a program depends on."""
+    versions = (sys.version, jax.__version__, jax.lib.__version__, eqx.__version__, np.__version__)
+    device = jax.devices()[0]
+    settings = (
+        os.environ.get("XLA_FLAGS"),
+        _setting("jax_enable_x64"),
+        _setting("jax_default_matmul_precision"),
+        (device.platform, device.device_kind, jax.device_count()),
+    )
+    return f"{versions}{settings}"
+
+
+def _setting(name: str) -> Any:
+    return getattr(jax.config, name)

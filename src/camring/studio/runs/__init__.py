@@ -1,0 +1,1 @@
+"""Commands that run beside the studio, each a process of its own."""
