@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from camring.programs.compilation_cache import EFFORT, PROGRAMS, SWITCH, keep_compiled_programs
+from camring.programs.compilation_cache import PROGRAMS, SWITCH, keep_compiled_programs
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -93,6 +93,8 @@ def simulated():
     return system, cycles
 
 
+# A structure's programs run for some ten motors: their compilation is what costs.
+QUICKLY_COMPILED = "--xla_backend_optimization_level=0 --xla_cpu_use_fusion_emitters=false"
 CACHE_HOME = "XDG_CACHE_HOME"
 _cache_folder: list[str] = []
 
@@ -107,8 +109,7 @@ def pytest_configure(config):
             _cache_folder.append(tempfile.mkdtemp(prefix="camring-tests-"))
         os.environ[CACHE_HOME] = os.environ.get("CAMRING_TESTS_CACHE") or _cache_folder[0]
         os.environ.pop(SWITCH, None)
-        # A structure's programs run for some ten motors: their compilation is what costs.
-        os.environ.setdefault(EFFORT, "quick")
+        os.environ["XLA_FLAGS"] = f"{os.environ.get('XLA_FLAGS', '')} {QUICKLY_COMPILED}".strip()
     keep_compiled_programs()
 
 

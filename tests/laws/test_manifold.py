@@ -16,7 +16,6 @@ from camring.numerics.radau import STAGE_INTEGRALS
 from camring.physics.heat.simulation import simulate
 from camring.physics.manifold.coupling import line_flow
 from camring.physics.piston_state import quadrature_samples, sample_angles
-from camring.programs.kept_program import UNOPTIMISED
 from camring.reference import independent_results
 
 RADIAL, RING = STRUCTURES[0], STRUCTURES[1]  # 8 pistons on 6 lobes; 6 on a free ring
@@ -190,7 +189,7 @@ def moments(orbit):
 
 def test_a_batch_with_manifolds_is_its_motors(radial):
     cases, cycles, _ = radial
-    program = eqx.filter_jit(jax.vmap(simulate), compiler_options=UNOPTIMISED)
+    program = eqx.filter_jit(jax.vmap(simulate))
     batch = program(*stacked(cases[: len(CASES)]))
     for index in range(len(CASES)):
         found, alone = single(batch, index), single(cycles, index)

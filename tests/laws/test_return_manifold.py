@@ -20,7 +20,6 @@ from camring.physics.port_waves import port_waves
 from camring.physics.rotation import turned
 from camring.physics.waveforms import waveforms
 from camring.programs.compiled import summarise
-from camring.programs.kept_program import UNOPTIMISED
 from camring.reference import independent_results
 
 RADIAL, RING = STRUCTURES[0], STRUCTURES[1]  # 8 pistons on 6 lobes; 6 on a free ring
@@ -158,7 +157,7 @@ class TestAlone:
     def test_the_line_takes_away_what_the_pistons_give(self, radial):
         _, cycles, metrics = radial
 
-        @eqx.filter_jit(compiler_options=UNOPTIMISED)
+        @eqx.filter_jit
         @jax.vmap
         def books(cycle):
             motor, fluid, point = cycle.motor, cycle.fluid, cycle.point
@@ -254,7 +253,7 @@ def test_slopes_are_central_differences(both):
             for each in pressures
         )
 
-    @eqx.filter_jit(compiler_options=UNOPTIMISED)
+    @eqx.filter_jit
     def alone(cycle, given, near):
         def of(numbers):
             again = neighbour(cycle, with_numbers(numbers), fluid, point)

@@ -15,7 +15,7 @@ from camring.metrics.timing import port_timing
 from camring.physics.leakage import ConstantLeakage
 from camring.physics.resolution import Resolution
 from camring.programs import kept_program
-from camring.programs.compilation_cache import EFFORT, MAKING_SUFFIX, PROGRAMS, SWITCH
+from camring.programs.compilation_cache import MAKING_SUFFIX, PROGRAMS, SWITCH
 from camring.programs.compiled import simulate
 from camring.programs.description import Indescribable, described
 from camring.programs.jax_store import jax_store_unused
@@ -24,26 +24,10 @@ from camring.programs.kept_program import KeptProgram, forget_programs
 from camring.programs.motor_program import motor_program, named
 
 
-@pytest.fixture(autouse=True)
-def _compiled_in_full(monkeypatch):
-    """As `jax.jit` compiles, for equality to the last bit."""
-    monkeypatch.delenv(EFFORT)
-
-
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv(PROGRAMS, str(tmp_path))
     return tmp_path
-
-
-def test_what_was_compiled_quickly_is_another_program_with_the_same_numbers(folder, monkeypatch):
-    case = motors.sound_case(0)
-    full = KeptProgram(port_timing)(*case)
-    monkeypatch.setenv(EFFORT, "quick")
-    quick = KeptProgram(port_timing)(*case)
-    assert len(kept(folder)) == 2
-    for a, b in zip(jax.tree.leaves(full), jax.tree.leaves(quick), strict=True):
-        np.testing.assert_allclose(a, b, rtol=1e-12)
 
 
 @pytest.fixture

@@ -22,8 +22,6 @@ from pathlib import Path
 SWITCH = "CAMRING_CACHE"
 PROGRAMS = "CAMRING_PROGRAMS"
 """The folder of `kept_program`, for this process and what it spawns; empty for none."""
-EFFORT = "CAMRING_COMPILER"
-"""`quick` compiles in half the time what then runs two to four times slower."""
 MARKER_SUFFIX = ".running"
 PROGRAM_SUFFIX = ".program"
 MAKING_SUFFIX = ".making"
@@ -63,11 +61,6 @@ def programs_folder() -> str:
     if PROGRAMS not in os.environ:
         os.environ[PROGRAMS] = str(private_folder() or "")
     return os.environ[PROGRAMS]
-
-
-def compiles_quickly() -> bool:
-    """Whether JAX's compiler shall leave out what makes programs fast: for a run of many motors."""
-    return os.environ.get(EFFORT, "").lower() == "quick"
 
 
 def private_folder() -> Path | None:

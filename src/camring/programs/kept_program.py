@@ -29,7 +29,7 @@ import numpy as np
 from jax.experimental.serialize_executable import deserialize_and_load, serialize
 from jaxlib import lapack
 
-from camring.programs.compilation_cache import MAKING_SUFFIX, compiles_quickly, programs_folder
+from camring.programs.compilation_cache import MAKING_SUFFIX, programs_folder
 from camring.programs.description import Indescribable, described
 from camring.programs.jax_store import jax_store_unused
 from camring.programs.kept_file import SUFFIX, content_of
@@ -38,10 +38,6 @@ from camring.programs.leaves import is_array, split, whole_form
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
-
-UNOPTIMISED = {"xla_backend_optimization_level": 0}
-"""What `CAMRING_COMPILER=quick` asks of JAX's compiler."""
-
 
 class _Place:
     """Stands in a result for one of the program's arrays."""
@@ -131,7 +127,7 @@ class KeptProgram(Generic[Arguments, Result]):
                 return None
             if key not in self._programs:
                 try:
-                    name = program_name(self._function, given, self._effort())
+                    name = program_name(self._function, given, self._options)
                     path = folder / f"{self._function.__name__}-{name}{SUFFIX}"
                 except Indescribable:
                     self._others.add(key)
@@ -143,14 +139,11 @@ class KeptProgram(Generic[Arguments, Result]):
                 )
             return self._programs[key]
 
-    def _effort(self) -> dict[str, Any] | None:
-        return {**(self._options or {}), **UNOPTIMISED} if compiles_quickly() else self._options
-
     def _compiled(self, path: Path, given: Any, arrays: list[Any]) -> Program:
         function, result = between_arrays(self._function, given)
         lowered = jax.jit(function).lower(arrays)
         with jax_store_unused():
-            compiled = lowered.compile(compiler_options=self._effort())
+            compiled = lowered.compile(compiler_options=self._options)
         with contextlib.suppress(Exception):  # what cannot be kept is compiled once more
             keep(path, (*serialize(compiled), result.tree))
         return Program(compiled, result.tree)
