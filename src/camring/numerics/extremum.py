@@ -93,7 +93,8 @@ def total_variation(
     half = -(linear + jnp.where(linear < 0, -root, root)) / 2
     one = start / jnp.where(turns, half, 1.0)
     within = (one > 0) & (one < 1)
-    other = half / jnp.where(turns & ~within, square, 1.0)
-    turn = jnp.where(within, one, other)
+    other = half / jnp.where(turns & ~within & (square != 0), square, 1.0)
+    # One that lies at an end may by rounding lie beyond it, and the other then anywhere.
+    turn = jnp.clip(jnp.where(within, one, other), 0.0, 1.0)
     there = ((square / 3 * turn + linear / 2) * turn + start) * turn
     return jnp.sum(jnp.abs(jnp.where(turns, 2 * there - rise, rise)))

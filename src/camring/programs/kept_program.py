@@ -39,6 +39,7 @@ from camring.programs.leaves import is_array, split, whole_form
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
+
 class _Place:
     """Stands in a result for one of the program's arrays."""
 
