@@ -20,6 +20,7 @@ from jaxtyping import Array, Float
 
 from camring.numerics.equation import Forcing
 from camring.numerics.mesh import Mesh
+from camring.numerics.once import computed_once
 from camring.numerics.periodic import extent
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, combine, solve_stages
 
@@ -123,13 +124,15 @@ def _linear(equation: CoupledEquation, forcing: Forcing, stages: Array) -> _Line
     def by_own_state(s: int) -> Array:
         return sum_of([by_total[t][s][:, None] * drawn_by_own[t] for t in numbers])
 
-    return _Linear(
-        rate,
-        stop_gradient(by_own),
-        stop_gradient(tuple(slope for slope, _ in by_each)),
-        shared_rate,
-        stop_gradient(tuple(map(by_own_state, numbers))),
-        stop_gradient(tuple(tuple(by_shared_state(s, t) for t in numbers) for s in numbers)),
+    return computed_once(
+        _Linear(
+            rate,
+            stop_gradient(by_own),
+            stop_gradient(tuple(slope for slope, _ in by_each)),
+            shared_rate,
+            stop_gradient(tuple(map(by_own_state, numbers))),
+            stop_gradient(tuple(tuple(by_shared_state(s, t) for t in numbers) for s in numbers)),
+        )
     )
 
 
@@ -159,7 +162,9 @@ def coupled_step(
     ones = jnp.ones_like(stages[0, :links])
     places = [(s, i) for s in numbers for i in range(3)]  # stages of the shared states
     pulled = [[weighted(i, here.by_shared[t])[j] for i in range(3)] for t, j in places]
-    growth, offset, *response = solve_stages(chamber_matrix, [ones] * 3, chamber_defect, *pulled)
+    growth, offset, *response = computed_once(
+        solve_stages(chamber_matrix, [ones] * 3, chamber_defect, *pulled)
+    )
 
     # The shared states, with every copy's answer in them.
     def felt(answer: list[Array]) -> list[Array]:
@@ -185,8 +190,8 @@ def coupled_step(
     one, none = jnp.ones_like(step), jnp.zeros_like(step)
     starts = [[one if s == t else none for s, _ in places] for t in numbers]
     # The last right side has one of its kind for every copy.
-    *from_shared, alone, from_copies = solve_stages(
-        shared_matrix, *starts, shared_defect, felt(growth)
+    *from_shared, alone, from_copies = computed_once(
+        solve_stages(shared_matrix, *starts, shared_defect, felt(growth))
     )
 
     # From the states at an element's start to all its stages: (3, state, state, element).
