@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 from camring.cli.app import app
 from camring.files.errors import InputError
 from camring.files.motor import parse_motor_file
+from camring.fitting import batch_rows
 from camring.fitting.doubts import Unfitted, require_fit, standardised
 from camring.fitting.fit import fit
 from camring.fitting.fitted_numbers import numbers_named
@@ -22,7 +23,6 @@ from camring.fitting.measurements.displacement import (
 from camring.fitting.measurements.operating_points import operating_points_of
 from camring.fitting.measurements.table import parse_measured_table
 from camring.fitting.simulated_rows import Bench
-from camring.objective.measurable import measurable_of_rows
 from camring.physics.piston_state import sample_angles
 from camring.presentation.fitting import document
 from camring.programs.compiled import simulate_compiled, summarise_compiled
@@ -334,11 +334,11 @@ def test_equal_operating_points_are_simulated_once(file, made, monkeypatch):
     near = [table(*(made * (1 + 1e-4 * turn))) for turn in range(4)]
     rows = parse_measured_table("\n".join([near[0], *(e.partition("\n")[2] for e in near[1:])]))
     bench = Bench(file, rows, numbers_named(file, list(TRUTH)))
-    asked = []
+    asked, compiled = [], batch_rows._side_by_side
 
     def counted(designs, *those):
         asked.append(designs.motor.dead_volume.shape[-1])
-        return measurable_of_rows(designs, *those)
+        return compiled(designs, *those)
 
     monkeypatch.setattr("camring.evaluation.simulations.CHUNK", 9)
     monkeypatch.setattr("camring.fitting.batch_rows._side_by_side", counted)

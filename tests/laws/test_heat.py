@@ -45,6 +45,9 @@ def warm_case(seed):
         motor,
         leakage=ViscousLeakage(motor.leakage.coefficient, float(fluid.viscosity) * 1.7),
         plate_gap=PlateGap(rng.uniform(4e-6, 8e-6), ports * np.array([0.8, 0.9, 1.1, 1.25])),
+        churning=Churning(
+            rng.uniform(0.02, 0.1), float(np.max(np.asarray(motor.cam.control_radii)))
+        ),
     )
     loss = float(run(Case(motor, fluid, point), FINEST)[1].case_heat)
     cooling = Thermal(
@@ -53,8 +56,7 @@ def warm_case(seed):
         specific_heat=rng.uniform(1700, 2100),
     )
     oil = replace(fluid, line=ViscosityLine.of_oil(OILS[seed % 3], inlet))
-    block = Churning(rng.uniform(0.02, 0.1), float(np.max(np.asarray(motor.cam.control_radii))))
-    return Case(replace(motor, thermal=cooling, churning=block), oil, point)
+    return Case(replace(motor, thermal=cooling), oil, point)
 
 
 @pytest.fixture(scope="module")
