@@ -1,4 +1,4 @@
-"""Draws the picture of README and guide: what an envelope makes of the wheel motor.
+"""Draws the pictures of two guides: what an envelope makes of the wheel motor.
 
 Run from the root of a checkout: `python docs/pictures/draw_envelope.py`. Three motors over
 speed and supply pressure, forwards: as given, the best of a search that knows the two
@@ -16,6 +16,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 import camring
+from camring import plots
 from camring.evaluation.envelope_batch import at_points
 from camring.physics.envelope import Envelope
 
@@ -85,5 +86,14 @@ def figure(found: dict[str, camring.MotorFile]) -> Figure:
     return drawing
 
 
+def beside(found: dict[str, camring.MotorFile]) -> Figure:
+    """Efficiency of the motor as given and of its best, for the guide of maps."""
+    titles = ("as given", "best over the envelope")
+    grids = [replace(camring.operating_map(found[title]), title=title) for title in titles]
+    return plots.result_maps(grids, "efficiency")
+
+
 if __name__ == "__main__":
-    figure(motors()).savefig(HERE / "envelope.png", dpi=110)
+    found = motors()
+    figure(found).savefig(HERE / "envelope.png", dpi=110)
+    beside(found).savefig(HERE / "map_beside.png", dpi=90, pil_kwargs={"optimize": True})

@@ -9,7 +9,7 @@ import equinox as eqx
 import jax
 import numpy as np
 import pytest
-from motor_files import SOUND
+from motor_files import SOUND, with_line
 from typer.testing import CliRunner
 
 from camring.analyses.operating_map import envelope_on, operating_map
@@ -39,6 +39,11 @@ from camring.programs.compiled import simulate, summarise
 
 RUN = CliRunner()
 FILE = parse_motor_file(SOUND)
+ENVELOPE = """
+[envelope]
+speed = ["90 rpm", "200 rpm"]
+supply_pressure = ["100 bar", "200 bar"]
+"""
 SHIFT = "motor.valve_plate.shift"
 SPEED, SUPPLY = "operating_points.speed", "operating_points.supply_pressure"
 
@@ -288,6 +293,33 @@ def test_the_map_command_writes_a_table_and_pictures(motor, tmp_path):
     assert [each["unit"] for each in said["axes"]] == ["rpm", "bar"]
 
 
+def test_another_motor_stands_beside_on_the_same_axes(motor, tmp_path):
+    """As given and the best: both over the values of the first, whatever the other's envelope."""
+    leaky, out = tmp_path / "leaky.toml", tmp_path / "map"
+    leaky.write_text(with_line('leakage_coefficient = "2e-12 m^3/(s*Pa)"') + ENVELOPE)
+    asked = ("map", motor, "--out", out, "--points", "3x2", "--results", "efficiency")
+    assert run(*asked).exit_code == 0
+    alone = (out / "map.csv").read_text()
+    done = run(*asked, "--beside", leaky, "--force")
+    assert done.exit_code == 0, done.output
+    assert str(leaky) in done.output.replace("\n", "")
+    assert {path.name for path in out.iterdir()} == {
+        "map.csv", "map_beside.csv", "efficiency.png"
+    }  # fmt: skip
+    assert (out / "map.csv").read_text() == alone
+    heads, *rows = csv.reader(alone.splitlines())
+    _, *others = csv.reader((out / "map_beside.csv").read_text().splitlines())
+    efficiency = heads.index("efficiency [%]")
+    for row, other in zip(rows, others, strict=True):
+        assert row[:2] == other[:2]
+        assert float(other[efficiency]) < float(row[efficiency])
+    said = json.loads(run(*asked, "--beside", leaky, "--force", "--json").stdout)
+    assert np.shape(said["beside"]["results"]["efficiency"]) == (3, 2)
+    assert said["beside"]["input"] == str(leaky)
+    assert run(*asked, "--force").exit_code == 0
+    assert not (out / "map_beside.csv").exists()  # it belonged to the earlier map
+
+
 def test_without_matplotlib_the_table_comes_and_says_that_the_picture_does_not(
     small_map, tmp_path, monkeypatch, capsys
 ):
@@ -350,6 +382,8 @@ def test_a_sweep_that_cannot_be_is_refused_in_a_sentence(motor, arguments, words
         (["--speed", "10..300"], "without a unit"),
         (["--speed", "-5 rpm..20 rpm"], "operating_points.speed"),
         (["--points", "400x400"], "asks for 160,000 simulations"),
+        (["--beside", "missing.toml"], "missing.toml"),
+        (["--beside", "missing.toml", "--charge"], "does not go with --charge"),
     ],
 )
 def test_a_map_that_cannot_be_is_refused_and_leaves_nothing(motor, tmp_path, arguments, words):

@@ -177,6 +177,22 @@ def test_a_map_goes_into_axes_of_the_callers(cycles):
     assert right.get_ylabel() == "Shaft torque, N·m"
 
 
+def test_maps_of_two_motors_have_one_scale():
+    """Each level stands for one colour, and a panel without a contour says its range."""
+    better = grid()
+    better.results["efficiency"][:] = 0.97 + 0.001 * better.results["efficiency"]
+    figure = plots.result_maps([grid(), better], "efficiency")
+    left, right, _ = figure.axes
+    fills = [
+        next(each for each in axes.collections if len(each.get_facecolor()) > 2)
+        for axes in (left, right)
+    ]
+    assert fills[0].levels.tolist() == fills[1].levels.tolist()
+    assert fills[0].norm.boundaries.tolist() == fills[1].norm.boundaries.tolist()
+    assert [text.get_text() for text in right.texts] == ["97.05 to 97.09 %"]
+    assert not left.texts or "to" not in left.texts[0].get_text()
+
+
 def test_a_result_that_is_the_same_everywhere_is_said_so():
     even = grid()
     even.results["stroke"][:] = 0.0118

@@ -1,5 +1,6 @@
 """One motor over two of shaft speed, supply pressure and oil temperature."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import pi
 
@@ -110,6 +111,28 @@ def operating_map(
     title = described(file, operating_point, without=set(values))
     grid = Grid.of(axes, *found, limits_of(file), title, unread_viscosity(file))
     return replace(grid, envelope=envelope_on(axes, file))
+
+
+def map_on(file: MotorFile, axes: Sequence[Axis], operating_point: int = 1) -> Grid:
+    """The map of another motor over the same values.
+
+    Parameters
+    ----------
+    axes
+        Of a map that `operating_map` made.
+
+    Raises
+    ------
+    InputError
+        As `operating_map`, of this motor.
+    """
+    words = {SPEED: "speed", SUPPLY: "pressure", TEMPERATURE: "temperature"}
+    ranges = {
+        words[each.key]: "..".join(f"{float(each.shown[k])!r} {each.unit}" for k in (0, -1))
+        for each in axes
+    }
+    points = "x".join(str(len(each.shown)) for each in axes)
+    return operating_map(file, points=points, operating_point=operating_point, **ranges)
 
 
 def map_axes(

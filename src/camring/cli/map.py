@@ -1,5 +1,6 @@
 """`camring map`: results over speed and supply pressure, or over temperature."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,6 +19,8 @@ from camring.files.visible import say
 
 if TYPE_CHECKING:
     import numpy as np
+
+    from camring.analyses.grid import Grid
 
 USUAL = ("efficiency", "torque_ripple", "max_pressure")
 IN_QUADRANTS = ("port_efficiency", *USUAL[1:])
@@ -65,6 +68,13 @@ def map(
             "signs; --speed and --pressure then give the first quadrant.",
         ),
     ] = False,
+    beside: Annotated[
+        Path | None,
+        typer.Option(
+            help="Another motor file, as that of the motor as given: each picture shows it first, "
+            "on the same axes and scale (and map_beside.csv).",
+        ),
+    ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Replace the files of an earlier map.")
     ] = False,
@@ -86,7 +96,7 @@ def map(
     keep_compiled_programs()
 
     from camring.analyses.charge import charge_curve
-    from camring.analyses.operating_map import operating_map
+    from camring.analyses.operating_map import map_on, operating_map
     from camring.analyses.quadrants import quadrants as over_both_signs
     from camring.evaluation.progress import Spoken
     from camring.files.errors import InputError
@@ -107,10 +117,17 @@ def map(
             "is a map over speed and pressure, which leaves no axis for --temperature",
             "leave one of the two out",
         )
+    if beside is not None and (quadrants or charge):
+        raise InputError(
+            "--beside",
+            f"does not go with --{'quadrants' if quadrants else 'charge'}",
+            "leave one of the two out",
+        )
     names = chosen_results(results, IN_QUADRANTS if quadrants else USUAL)
     folder = Folder(out, "map.csv", names, picture.value, force, decimal)
     files = ChargeFiles(out, picture.value, force, decimal) if charge else None
     file = read_motor_file(motor)
+    other = None if beside is None else read_motor_file(beside)
     with Spoken("Simulating the map."):
         if quadrants:
             found = over_both_signs(
@@ -125,20 +142,36 @@ def map(
                 points=points,
                 operating_point=point,
             )
+    compared = None
+    if other is not None and beside is not None:
+        with Spoken("Simulating the map of the motor beside it."):
+            compared = _headed(map_on(other, found.axes, point), beside)
+        found = _headed(found, motor)
     curve = None
     if files is not None:
         with Spoken("Seeking the charge pressure."):
             curve = charge_curve(file, _forwards(found.axes[0].si("rad/s")), point)
-    written = folder.write(found, names)
+    written = folder.write(found, names, compared)
     if files is not None and curve is not None:
         written += files.write(curve)
     if json:
-        typer.echo(document(found, motor, point, None if curve is None else charge_document(curve)))
+        charged = None if curve is None else charge_document(curve)
+        pair = None if compared is None or beside is None else (beside, compared)
+        typer.echo(document(found, motor, point, charged, pair))
     else:
-        print_grid(found, names)
+        if compared is not None:
+            print_grid(compared, names, headed=True)
+        print_grid(found, names, headed=compared is not None)
         if curve is not None:
             print_charge(curve, console())
     say(f"Wrote {', '.join(each.name for each in written)} in {out}.", err=json)
+
+
+def _headed(grid: "Grid", source: Path) -> "Grid":
+    """Named by its file: a best design has the name of the motor it was found from."""
+    from camring.files.motor.document import printable
+
+    return replace(grid, title=f"{printable(source)}\n{grid.title.partition(chr(10))[2]}")
 
 
 def _forwards(speeds: "np.ndarray") -> "np.ndarray":

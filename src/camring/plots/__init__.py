@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from camring.plots.grids import (
         efficiency_map,
         result_map,
+        result_maps,
         ripple_map,
         sweep_curves,
     )
@@ -40,6 +41,7 @@ _HOMES = {
     "pressure_volume": "curves",
     "quadrant_map": "quadrants",
     "result_map": "grids",
+    "result_maps": "grids",
     "ripple_map": "grids",
     "robust_comparison": "histograms",
     "save": "style",
@@ -63,6 +65,7 @@ __all__ = [
     "quadrant_map",
     "require_matplotlib",
     "result_map",
+    "result_maps",
     "ripple_map",
     "robust_comparison",
     "save",

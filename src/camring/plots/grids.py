@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm
+from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
@@ -57,46 +58,97 @@ def result_map(grid: Grid, name: str, axes: Axes | None = None) -> Figure:
     InputError
         For a grid over one number, or one without a single sound point.
     """
-    if len(grid.axes) != 2:
-        raise InputError("a map", "needs two numbers that vary", "draw one with sweep_curves")
     own = axes is None
     figure, axes = drawing_board(axes, 6.3, 4.6)
-    across, up = grid.axes
-    shown, values = quantity(name), grid.shown(name)
-    label = f"{shown.label}, {shown.unit or '–'}"
-    finite = values[np.isfinite(values)]
-    if not finite.size:
-        raise InputError(
-            name, "has no value at any point", "look at the warnings, and narrow the ranges"
-        )
-    levels = levels_of(finite, shown.unit, name)
-    colours = "cividis_r" if shown.better < 0 else "cividis"
-    picture = np.ma.masked_invalid(values).T
-    if len(levels) < 2:
-        axes.contourf(across.shown, up.shown, picture, colors=["#b9b9a0"], levels=1)
-        axes.text(
-            0.5, 0.5, f"{finite.mean():.4g} {shown.unit} everywhere", transform=axes.transAxes
-        )
-    else:
-        norm = BoundaryNorm(levels, 256, extend="both")
-        filled = axes.contourf(
-            across.shown, up.shown, picture, levels, cmap=colours, norm=norm, extend="both"
-        )
-        bar = figure.colorbar(filled, ax=axes, label=label, ticks=levels, format="%.4g")
-        bar.ax.tick_params(labelsize=8)
-        lines = axes.contour(
-            across.shown, up.shown, picture, levels, colors=INK, linewidths=0.6, alpha=0.75
-        )
-        number_contours(axes, lines, 7.5, grid.envelope)
-    handles = _boundaries(axes, grid, name)
-    axes.grid(False)
-    axes.set(xlabel=across.label, ylabel=up.label)
-    axes.set_title(grid.title)
+    handles = _fill(figure, [axes], [grid], name)
     if handles and own:
         figure.legend(handles=handles, loc="outside lower center", ncols=2, fontsize=8)
     elif handles:
         axes.legend(handles=handles, fontsize=8)
     return figure
+
+
+@styled
+def result_maps(grids: Sequence[Grid], name: str) -> Figure:
+    """One result of several motors, panel by panel on one scale: as given and the best.
+
+    Parameters
+    ----------
+    grids
+        Over the same two numbers; see `result_map`.
+
+    Raises
+    ------
+    InputError
+        As `result_map`, where none of the motors has a value.
+    """
+    figure = sheet(1.2 + 4.2 * len(grids), 4.8)
+    panels = figure.subplots(1, len(grids), sharey=True, squeeze=False)[0]
+    handles = _fill(figure, list(panels), grids, name)
+    for panel in panels[1:]:
+        panel.set_ylabel("")
+    if handles:
+        figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8)
+    return figure
+
+
+def _fill(figure: Any, panels: list[Axes], grids: Sequence[Grid], name: str) -> list[Any]:
+    """A map in each panel, colours and contours of all alike; what a legend says of them."""
+    if any(len(grid.axes) != 2 for grid in grids):
+        raise InputError("a map", "needs two numbers that vary", "draw one with sweep_curves")
+    shown = quantity(name)
+    all_values = np.concatenate([grid.shown(name).ravel() for grid in grids])
+    finite = all_values[np.isfinite(all_values)]
+    if not finite.size:
+        raise InputError(
+            name, "has no value at any point", "look at the warnings, and narrow the ranges"
+        )
+    levels = levels_of(finite, shown.unit, name)
+    legend: dict[Any, Any] = {}
+    filled = None
+    for axes, grid in zip(panels, grids, strict=True):
+        if len(levels) < 2:
+            picture = np.ma.masked_invalid(grid.shown(name)).T
+            axes.contourf(*_places(grid), picture, colors=["#b9b9a0"], levels=1)
+            _say_inside(axes, f"{finite.mean():.4g} {shown.unit} everywhere")
+        else:
+            filled = _contours(axes, grid, name, levels)
+        legend |= {each.get_label(): each for each in _boundaries(axes, grid, name)}
+        axes.grid(False)
+        axes.set(xlabel=grid.axes[0].label, ylabel=grid.axes[1].label)
+        axes.set_title(grid.title)
+    if filled is not None:
+        label = f"{shown.label}, {shown.unit or '–'}"
+        bar = figure.colorbar(filled, ax=panels, label=label, ticks=levels, format="%.4g")
+        bar.ax.tick_params(labelsize=8)
+    return list(legend.values())
+
+
+def _places(grid: Grid) -> list[Float[np.ndarray, " place"]]:
+    return [each.shown for each in grid.axes]
+
+
+def _contours(
+    axes: Axes, grid: Grid, name: str, levels: Float[np.ndarray, " level"]
+) -> QuadContourSet:
+    """Colours between levels and numbered lines on them; without a line the range in words."""
+    shown, picture = quantity(name), np.ma.masked_invalid(grid.shown(name)).T
+    colours = "cividis_r" if shown.better < 0 else "cividis"
+    norm = BoundaryNorm(levels, 256, extend="both")
+    filled = axes.contourf(*_places(grid), picture, levels, cmap=colours, norm=norm, extend="both")
+    lines = axes.contour(*_places(grid), picture, levels, colors=INK, linewidths=0.6, alpha=0.75)
+    number_contours(axes, lines, 7.5, grid.envelope)
+    if not np.any((picture.min() < levels) & (levels < picture.max())):
+        ends = np.nanmin(grid.results[name]), np.nanmax(grid.results[name])
+        low, high = (shown.written(float(end)) for end in ends)
+        _say_inside(axes, f"{low} to {high} {shown.unit}")
+    return filled
+
+
+def _say_inside(axes: Axes, words: str) -> None:
+    """In the middle of a map, on whatever colour it has there."""
+    stroke = [withStroke(linewidth=3.0, foreground="white")]
+    axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", path_effects=stroke)
 
 
 def efficiency_map(grid: Grid, axes: Axes | None = None) -> Figure:

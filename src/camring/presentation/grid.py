@@ -87,19 +87,27 @@ class Folder:
     ) -> None:
         self.path, self.replace, self.decimal = path, replace, decimal
         self.table = path / csv_name
+        self.other_table = self.table.with_stem(f"{self.table.stem}_beside")
         drawn = pictures if picture_format != "none" and _drawable() else ()
         self.pictures = {name: path / f"{name}.{picture_format}" for name in drawn}
         if path.exists() and not path.is_dir():
             raise InputError(printable(path), "is no folder", "give --out another name")
         if not replace:
-            for place in (self.table, *self.pictures.values()):
+            for place in (self.table, self.other_table, *self.pictures.values()):
                 if place.exists():
                     raise InputError(
                         printable(place), "exists", "give another --out, or --force to replace it"
                     )
 
-    def write(self, grid: Grid, names: Sequence[str]) -> list[Path]:
-        """The table, and one picture for each name (all in one where one number varies)."""
+    def write(self, grid: Grid, names: Sequence[str], beside: Grid | None = None) -> list[Path]:
+        """The table, and one picture for each name (all in one where one number varies).
+
+        Parameters
+        ----------
+        beside
+            Another motor over the same numbers, which each picture shows first and on the same
+            scale; its table ends in `_beside.csv`.
+        """
         try:
             self.path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -109,25 +117,30 @@ class Folder:
             ) from None
         # The table comes last: where it stands, whatever was asked for stands beside it.
         if self.replace:
-            self.table.unlink(missing_ok=True)
-        written = [*self._draw(grid, names), self.table]
-        write_new_file(self.table, csv_text(grid, self.decimal), replace=self.replace)
-        return written[-1:] + written[:-1]
+            for table in (self.table, self.other_table):
+                table.unlink(missing_ok=True)
+        written = self._draw(grid, names, beside)
+        tables = {} if beside is None else {self.other_table: beside}
+        for place, content in {**tables, self.table: grid}.items():
+            write_new_file(place, csv_text(content, self.decimal), replace=self.replace)
+        return [self.table, *tables, *written]
 
-    def _draw(self, grid: Grid, names: Sequence[str]) -> list[Path]:
+    def _draw(self, grid: Grid, names: Sequence[str], beside: Grid | None) -> list[Path]:
         if not self.pictures:
             return []
-        from camring.plots import quadrant_map, result_map, save, sweep_curves
+        from camring.plots import quadrant_map, result_map, result_maps, save, sweep_curves
 
         over_two = quadrant_map if grid.quadrants else result_map
         written = []
         for name, place in self.pictures.items():
             if len(grid.axes) == 1:
                 written.append(save(sweep_curves(grid, names), place))
-            elif np.any(np.isfinite(grid.results[name])):
-                written.append(save(over_two(grid, name), place))
-            else:
+            elif not np.any(np.isfinite(grid.results[name])):
                 say(f"No picture of {name}: it has no value at any point.", err=True)
+            elif beside is not None and np.any(np.isfinite(beside.results[name])):
+                written.append(save(result_maps([beside, grid], name), place))
+            else:
+                written.append(save(over_two(grid, name), place))
         return written
 
 
@@ -159,7 +172,13 @@ def csv_text(grid: Grid, decimal: Decimal = Decimal.POINT) -> str:
     )
 
 
-def document(grid: Grid, source: Path, point: int, charge: dict[str, Any] | None = None) -> str:
+def document(
+    grid: Grid,
+    source: Path,
+    point: int,
+    charge: dict[str, Any] | None = None,
+    beside: tuple[Path, Grid] | None = None,
+) -> str:
     """One JSON document: axes in their units, results in SI as nested lists, null for none."""
     return json.dumps(
         finite(
@@ -171,17 +190,28 @@ def document(grid: Grid, source: Path, point: int, charge: dict[str, Any] | None
                     {"key": axis.key, "unit": axis.unit, "values": axis.shown.tolist()}
                     for axis in grid.axes
                 ],
-                "results": {name: values.tolist() for name, values in grid.results.items()},
-                "duty": grid.mode.tolist(),
-                "faults": grid.faults.tolist(),
-                "limits": grid.limits,
+                **_content(grid),
                 "envelope": _envelope(grid),
-                "warnings": grid.warnings(),
                 **({} if charge is None else {"charge": charge}),
+                **({} if beside is None else {"beside": _beside(*beside)}),
             }
         ),
         allow_nan=False,
     )
+
+
+def _content(grid: Grid) -> dict[str, Any]:
+    return {
+        "results": {name: values.tolist() for name, values in grid.results.items()},
+        "duty": grid.mode.tolist(),
+        "faults": grid.faults.tolist(),
+        "limits": grid.limits,
+        "warnings": grid.warnings(),
+    }
+
+
+def _beside(source: Path, grid: Grid) -> dict[str, Any]:
+    return {"input": printable(source), **_content(grid)}
 
 
 def _envelope(grid: Grid) -> list[dict[str, object]] | None:
@@ -194,9 +224,11 @@ def _envelope(grid: Grid) -> list[dict[str, object]] | None:
     ]
 
 
-def print_grid(grid: Grid, names: Sequence[str]) -> None:
+def print_grid(grid: Grid, names: Sequence[str], headed: bool = False) -> None:
     """The values over one number, the range and the best place of each result, warnings."""
     out = console()
+    if headed:
+        out.print(f"[bold]{escape(grid.title.partition(chr(10))[0])}[/bold]")
     if len(grid.axes) == 1 and len(grid.axes[0].shown) <= LONGEST_TABLE:
         out.print(_values(grid, names))
     out.print(_ranges(grid, names))
