@@ -58,7 +58,7 @@ def test_a_motor_that_keeps_its_envelope_reads_where_it_is_tightest(facts, run):
     done = run(facts)
     assert done.exit_code == 0, done.output
     said = " ".join(done.stdout.split())
-    assert "Every limit holds at 108 points of it." in said
+    assert "Every limit of the envelope holds at 108 points of it." in said
     assert "The motor runs without lift-off or cavitation from 200 to 250 bar, 250 to 300" in said
     document = json.loads(run(facts, "--json").stdout)
     assert document["feasible"] is True

@@ -39,11 +39,6 @@ from camring.programs.compiled import simulate, summarise
 
 RUN = CliRunner()
 FILE = parse_motor_file(SOUND)
-ENVELOPE = """
-[envelope]
-speed = ["90 rpm", "200 rpm"]
-supply_pressure = ["100 bar", "200 bar"]
-"""
 SHIFT = "motor.valve_plate.shift"
 SPEED, SUPPLY = "operating_points.speed", "operating_points.supply_pressure"
 
@@ -297,7 +292,8 @@ def test_another_motor_stands_beside_on_the_same_axes(motor, tmp_path):
     """As given and the best: both over the values of the first, whatever the other's envelope."""
     leaky, out = tmp_path / "leaky.toml", tmp_path / "map"
     leaky.write_text(with_line('leakage_coefficient = "2e-12 m^3/(s*Pa)"') + ENVELOPE)
-    asked = ("map", motor, "--out", out, "--points", "3x2", "--results", "efficiency")
+    values = ("--speed", "90, 100, 300 rpm", "--pressure", "100..350 bar", "--points", "3x2")
+    asked = ("map", motor, "--out", out, *values, "--results", "efficiency")
     assert run(*asked).exit_code == 0
     alone = (out / "map.csv").read_text()
     done = run(*asked, "--beside", leaky, "--force")
@@ -316,6 +312,15 @@ def test_another_motor_stands_beside_on_the_same_axes(motor, tmp_path):
     said = json.loads(run(*asked, "--beside", leaky, "--force", "--json").stdout)
     assert np.shape(said["beside"]["results"]["efficiency"]) == (3, 2)
     assert said["beside"]["input"] == str(leaky)
+    refused = run(*asked, "--beside", leaky, "--force", "--point", "3")
+    assert refused.exit_code == 2
+    leaky.write_text(
+        leaky.read_text().replace('return_pressure = "10 bar"', 'return_pressure = "120 bar"')
+    )
+    refused = run(*asked, "--beside", leaky, "--force")
+    assert refused.exit_code == 2
+    assert "leaky.toml: envelope.supply_pressure begins at" in refused.stderr.replace("\n", " ")
+    assert (out / "map_beside.csv").exists()
     assert run(*asked, "--force").exit_code == 0
     assert not (out / "map_beside.csv").exists()  # it belonged to the earlier map
 

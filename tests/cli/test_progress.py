@@ -48,7 +48,7 @@ def test_a_search_says_where_it_is_while_nothing_comes(page):
             "1 of 30 evaluations, best 0.25, torque ripple 5.00 %, 1 feasible; 0 s since the last.",
         )
         progress(Record(1, "x", np.zeros(1), failed("the mesh tangled")))
-        assert "Evaluation 1 failed: the mesh tangled." in lines_of(page)
+        wait_for_line(page, "Evaluation 1 failed: the mesh tangled. The search goes on; further")
     count = len(lines_of(page))
     time.sleep(3 * EVERY)
     assert len(lines_of(page)) == count  # and is silent when it has ended

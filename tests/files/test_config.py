@@ -345,6 +345,16 @@ class TestWriter:
         with pytest.raises(InputError, match=r"has no table \[design_space\]"):
             parse_motor_file(text).with_design([])
 
+    def test_one_remark_says_where_a_design_comes_from(self):
+        """Comments of the given file stay, and may be untrue of the numbers found."""
+        file = parse_motor_file(SOUND)
+        half = np.full(file.design_space.dimension, 0.5)
+        first = parse_motor_file(file.with_design(half, "camring optimise"))
+        again = first.with_design(half, "camring pareto")
+        assert again.startswith("# A design found by `camring pareto`. Remarks below")
+        assert again.count("A design found by") == 1
+        assert again.split("\n", 2)[2] == file.with_design(half)
+
     def test_comments_behind_lists_stay(self):
         text = SOUND.replace("]\ndegree", "]  # the ring\ndegree")
         file = parse_motor_file(text)

@@ -112,7 +112,10 @@ FAULTS = {
     "negative size": (with_line('bore = "-30 mm"'), ["motor.bore", "above zero"]),
     "millimetres without saying so": (
         with_line("bore = 30"),
-        ["motor.bore is 30 but must lie between 0.0001 and 2 m", '"30 mm"'],
+        [
+            "motor.bore is 30, without a unit and so in m, but must lie between 0.0001 and 2 m",
+            '"30 mm"',
+        ],
     ),
     "zero size": (with_line("bore = 0"), ["motor.bore is 0 but must be above zero"]),
     "zero speed": (with_line('speed = "0 rpm"'), ["[[operating_points]] 1, speed", "above zero"]),

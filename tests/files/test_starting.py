@@ -269,6 +269,7 @@ class TestCrowding:
         assert "run into each other at a radius of 71.86 mm" in said
         assert "leaves 13.1 mm" in said
         assert "The rollers run into each other" in said
+        assert "The rollers, 68 mm across, are wider than the pistons of 55 mm" in said
 
     def test_a_given_gap_says_how_long_a_piston_is(self):
         gap = 'clearance = "15 um"\nlength = "50 mm"'

@@ -26,6 +26,17 @@ def test_a_curve_that_turns_at_its_samples_travels_what_they_are_apart(ends):
 
 
 @pytest.mark.parametrize("rounding", ROUNDING)
+def test_a_curve_that_runs_out_into_a_flat_travels_its_height(rounding):
+    """`(1 - t)^3`, whose slope has a double root at the end: rounding leaves it none."""
+    random = np.random.default_rng(7)
+    for height in random.uniform(1e-3, 1, 300):
+        value, slope = real([[0.0], [height]]), real([[3 * height], [rounding * height]])
+        found, by_slope = jax.value_and_grad(total_variation, 1)(value, slope, real([1.0]))
+        assert float(found) == pytest.approx(height, rel=1e-12)
+        assert np.all(np.isfinite(by_slope))
+
+
+@pytest.mark.parametrize("rounding", ROUNDING)
 @pytest.mark.parametrize("turning", [0.0, 1e-12, 0.1, 0.5, 0.9, 1 - 1e-12, 1.0])
 def test_a_parabola_travels_to_its_vertex_and_back(turning, rounding):
     """However near an end it lies, where the cubic's other turning point is nowhere."""

@@ -177,6 +177,13 @@ def test_a_map_goes_into_axes_of_the_callers(cycles):
     assert right.get_ylabel() == "Shaft torque, N·m"
 
 
+def test_a_name_is_no_formula(cycles, tmp_path):
+    named = replace(grid(), title="boo $\\frac{$ x\nreturn 10 bar")
+    plots.save(plots.efficiency_map(named), tmp_path / "map.svg")
+    plots.save(plots.torque(cycles[0], labels=("a$_{$",)), tmp_path / "torque.svg")
+    plots.save(plots.waveforms(cycles[0], labels=("a$_{$",)), tmp_path / "waves.svg")
+
+
 def test_maps_of_two_motors_have_one_scale():
     """Each level stands for one colour, and a panel without a contour says its range."""
     better = grid()

@@ -6,9 +6,9 @@ from camring.presentation.study import LIFE, SHOWN, _margin, _shown
 
 
 def test_a_margin_on_its_limit_has_no_minus():
-    assert _margin(0.0) == "+0.0000"
-    assert _margin(-0.25) == "+0.2500"
-    assert _margin(0.01) == "[red]−0.0100[/]"
+    assert _margin(0.0) == "+0 %"
+    assert _margin(-0.25) == "+25 %"
+    assert _margin(0.01) == "[red]−1 %[/]"
     assert _margin(math.nan) == "–"
 
 

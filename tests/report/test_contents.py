@@ -28,7 +28,7 @@ from camring.report import (
     write_report,
 )
 from camring.report.verdicts import read_verdict, validated_trial, verdict_of
-from camring.studies.study_folder import StudyFolder
+from camring.studies.study_folder import FOUND_BY, StudyFolder
 from camring.studies.validation import Check, Validation
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "derivation_motor.toml"
@@ -112,7 +112,7 @@ def _motors_of(study):
     finally:
         opened.close()
     given = read_motor_file(opened.given_path)
-    best = parse_motor_file(given.with_design(point.tolist()), opened.best_path)
+    best = parse_motor_file(given.with_design(point.tolist(), FOUND_BY), opened.best_path)
     return given, best, "best", point
 
 

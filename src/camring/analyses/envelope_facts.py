@@ -78,7 +78,9 @@ def print_envelope(facts: EnvelopeFacts, out: Console) -> None:
         count = int(np.count_nonzero(check.given.faults))
         out.print(f"[red]No results at {count} points of the envelope.[/red]")
     else:
-        out.print(f"[green]Every limit holds at {check.grid.count} points of it.[/green]")
+        out.print(
+            f"[green]Every limit of the envelope holds at {check.grid.count} points of it.[/green]"
+        )
 
 
 def envelope_document(facts: EnvelopeFacts) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """One motor over two of shaft speed, supply pressure and oil temperature."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from math import pi
 
@@ -14,7 +13,7 @@ from camring.evaluation.simulations import repeated, results_of_many, stacked
 from camring.files.errors import InputError
 from camring.files.motor import MotorFile
 from camring.files.motor.build import build_system
-from camring.files.motor.document import at_temperature
+from camring.files.motor.document import at_temperature, printable
 from camring.files.motor.entries import Number, Unfit
 from camring.files.motor.keys import key_map
 from camring.files.motor.motor_file import validated
@@ -75,9 +74,47 @@ def operating_map(
     >>> found.results["efficiency"].shape, int(found.faults.max())
     ((4, 3), 0)
     """
-    point = point_of(file, operating_point)
+    point = _driving_point(file, operating_point)
     counts = point_counts(points, 2, ON_EACH_AXIS)
-    system = file.system
+    axes, values = _axes(file, point, _ranges(file, point, speed, pressure, temperature), counts)
+    return _over(file, axes, values, operating_point)
+
+
+def maps_beside(
+    file: MotorFile, other: MotorFile, operating_point: int = 1, **ranges: str | None
+) -> tuple[Grid, Grid]:
+    """The map of a motor, and that of another over the same values.
+
+    Parameters
+    ----------
+    ranges
+        As `operating_map`, of the first motor.
+
+    Raises
+    ------
+    InputError
+        As `operating_map`, of either motor, before anything is simulated.
+    """
+    point = _driving_point(file, operating_point)
+    counts = point_counts(ranges.pop("points", None), 2, ON_EACH_AXIS)
+    given = (ranges.get(name) for name in ("speed", "pressure", "temperature"))
+    axes, values = _axes(file, point, _ranges(file, point, *given), counts)
+    try:
+        there = _driving_point(other, operating_point)
+        if TEMPERATURE in values:
+            _require_oil(other)
+        others = {each.key: _checked(each, other) for each in axes}
+        _require_drop(axes, others, there)
+    except InputError as error:
+        raise error.of(printable(other.path)) from None
+    return (
+        _over(file, axes, values, operating_point),
+        _over(other, axes, others, operating_point),
+    )
+
+
+def _driving_point(file: MotorFile, operating_point: int) -> OperatingPoint:
+    point = point_of(file, operating_point)
     if float(point.pressure_drop) < 0:
         raise InputError(
             f"operating point {operating_point}",
@@ -85,7 +122,17 @@ def operating_map(
             f"{float(point.return_pressure) / BAR:.4g} bar, where a map is one of driving",
             "add --quadrants, which shows both, or choose another with --point",
         )
-    axes, values = _axes(file, point, _ranges(file, point, speed, pressure, temperature), counts)
+    return point
+
+
+def _over(
+    file: MotorFile,
+    axes: tuple[Axis, ...],
+    values: dict[str, np.ndarray],
+    operating_point: int,
+) -> Grid:
+    """The motor at every combination of the axes' values, SI by key."""
+    system, point = file.system, point_of(file, operating_point)
     places = np.meshgrid(*(np.arange(len(each.shown)) for each in axes), indexing="ij")
     place = {each.key: at.ravel() for each, at in zip(axes, places, strict=True)}
     count = places[0].size
@@ -111,28 +158,6 @@ def operating_map(
     title = described(file, operating_point, without=set(values))
     grid = Grid.of(axes, *found, limits_of(file), title, unread_viscosity(file))
     return replace(grid, envelope=envelope_on(axes, file))
-
-
-def map_on(file: MotorFile, axes: Sequence[Axis], operating_point: int = 1) -> Grid:
-    """The map of another motor over the same values.
-
-    Parameters
-    ----------
-    axes
-        Of a map that `operating_map` made.
-
-    Raises
-    ------
-    InputError
-        As `operating_map`, of this motor.
-    """
-    words = {SPEED: "speed", SUPPLY: "pressure", TEMPERATURE: "temperature"}
-    ranges = {
-        words[each.key]: "..".join(f"{float(each.shown[k])!r} {each.unit}" for k in (0, -1))
-        for each in axes
-    }
-    points = "x".join(str(len(each.shown)) for each in axes)
-    return operating_map(file, points=points, operating_point=operating_point, **ranges)
 
 
 def map_axes(
@@ -186,15 +211,19 @@ def _ranges(
             "is a third axis beside --speed and --pressure, and a picture has two",
             "leave one of the three out: it is then held at the operating point's",
         )
+    _require_oil(file)
+    if pressure is not None:
+        return {SUPPLY: pressure, TEMPERATURE: temperature}
+    return {SPEED: speed or _usual_speeds(file), TEMPERATURE: temperature}
+
+
+def _require_oil(file: MotorFile) -> None:
     if "oil" not in file.document["fluid"]:
         raise InputError(
             "--temperature",
             f"has no effect while {file.path.name} names no oil",
             f'name it, oil = "{OILS[1]}" in [fluid], with its temperature',
         )
-    if pressure is not None:
-        return {SUPPLY: pressure, TEMPERATURE: temperature}
-    return {SPEED: speed or _usual_speeds(file), TEMPERATURE: temperature}
 
 
 def _require_drop(

@@ -96,7 +96,7 @@ def map(
     keep_compiled_programs()
 
     from camring.analyses.charge import charge_curve
-    from camring.analyses.operating_map import map_on, operating_map
+    from camring.analyses.operating_map import maps_beside, operating_map
     from camring.analyses.quadrants import quadrants as over_both_signs
     from camring.evaluation.progress import Spoken
     from camring.files.errors import InputError
@@ -127,26 +127,28 @@ def map(
     folder = Folder(out, "map.csv", names, picture.value, force, decimal)
     files = ChargeFiles(out, picture.value, force, decimal) if charge else None
     file = read_motor_file(motor)
-    other = None if beside is None else read_motor_file(beside)
+    try:
+        other = None if beside is None else read_motor_file(beside)
+    except InputError as error:
+        raise error.of(str(beside)) from None
     with Spoken("Simulating the map."):
+        compared = None
         if quadrants:
             found = over_both_signs(
                 file, speed=speed, pressure=pressure, points=points, operating_point=point
             )
         else:
-            found = operating_map(
-                file,
-                speed=speed,
-                pressure=pressure,
-                temperature=temperature,
-                points=points,
-                operating_point=point,
-            )
-    compared = None
-    if other is not None and beside is not None:
-        with Spoken("Simulating the map of the motor beside it."):
-            compared = _headed(map_on(other, found.axes, point), beside)
-        found = _headed(found, motor)
+            asked = {
+                "speed": speed,
+                "pressure": pressure,
+                "temperature": temperature,
+                "points": points,
+            }
+            if other is None or beside is None:
+                found = operating_map(file, operating_point=point, **asked)
+            else:
+                found, compared = maps_beside(file, other, point, **asked)
+                found, compared = _headed(found, motor), _headed(compared, beside)
     curve = None
     if files is not None:
         with Spoken("Seeking the charge pressure."):

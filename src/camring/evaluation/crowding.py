@@ -32,6 +32,11 @@ def crowded(motor: Motor, inner: float) -> list[str]:
             "larger ring."
         )
     across = 2 * float(motor.roller.radius)
+    if across > bore:
+        said.append(
+            f"The rollers, {1e3 * across:.4g} mm across, are wider than the pistons of "
+            f"{1e3 * bore:.4g} mm: a piston that carries its roller in its end cannot hold it."
+        )
     apart = float(wall_between(pistons, across, inner))
     if apart < 0:
         said.append(

@@ -104,6 +104,7 @@ class Spoken:
         printed(self._console, sentence)
 
 
+NOT_FINITE = "a result or a limit is no finite number"
 FIRST_RUN = "Programs for motors of this kind that never ran here are compiled, for some minutes."
 SIMULATING = f"Simulating. {FIRST_RUN}"
 
@@ -169,7 +170,10 @@ class SearchProgress:
         self._phase = record.phase
         if record.failed and not self._any_failed:
             self._any_failed = True
-            self.say(f"Evaluation {record.trial} failed: {record.outcome.failure}.")
+            self.say(
+                f"Evaluation {record.trial} failed: {record.outcome.failure or NOT_FINITE}. "
+                "The search goes on; further failures are counted in the report."
+            )
         if record.feasible:
             self._best = best_of([*([self._best] if self._best else []), record])
         self._bar.update(

@@ -36,6 +36,11 @@ class InputError(CamringError):
         self.way_out = way_out
         super().__init__(field, problem, way_out)
 
+    def of(self, file: str) -> "InputError":
+        """The same, said of one of several files, by its name."""
+        field = self.field if file in self.field else f"{file}: {self.field}"
+        return InputError(field, self.problem, self.way_out)
+
     def __str__(self) -> str:
         return f"{self.field} {self.problem}; {self.way_out}."
 

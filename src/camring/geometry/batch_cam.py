@@ -93,7 +93,9 @@ def round_the_cam(cam: RadialCam, parts: int = SAMPLES_PER_SPAN) -> RoundTheCam:
     square = 3 * (start + end) - 6 * rise
     linear = end - start - square
     turns = start * end < 0
-    root = jnp.sqrt(jnp.where(turns, linear**2 - 4 * square * start, 1.0))
+    discriminant = linear**2 - 4 * square * start
+    apart = turns & (discriminant > 0)  # but for rounding always, where the slope turns
+    root = jnp.where(apart, jnp.sqrt(jnp.where(apart, discriminant, 1.0)), 0.0)
     half = -(linear + jnp.where(linear < 0, -root, root)) / 2
     one = start / jnp.where(turns, half, 1.0)
     other = half / jnp.where(turns & (square != 0), square, 1.0)

@@ -89,7 +89,10 @@ def total_variation(
     # The cubic's slope is start + linear t + square t^2; one root lies between 0 and 1.
     square = 3 * (start + end) - 6 * rise
     linear = end - start - square
-    root = jnp.sqrt(jnp.where(turns, linear**2 - 4 * square * start, 1.0))
+    # Not below zero but by rounding, where both roots are one: a curve that runs out into a flat.
+    discriminant = linear**2 - 4 * square * start
+    apart = turns & (discriminant > 0)
+    root = jnp.where(apart, jnp.sqrt(jnp.where(apart, discriminant, 1.0)), 0.0)
     half = -(linear + jnp.where(linear < 0, -root, root)) / 2
     one = start / jnp.where(turns, half, 1.0)
     within = (one > 0) & (one < 1)

@@ -12,7 +12,7 @@ from camring.files.errors import InputError
 from camring.files.point_names import name_of
 from camring.numerics.quantity import real
 from camring.plots.samples import spectra
-from camring.plots.style import drawing_board, line, sheet, styled
+from camring.plots.style import as_written, drawing_board, line, sheet, styled
 
 if TYPE_CHECKING:
     from camring.physics.cycle import Cycle
@@ -58,7 +58,7 @@ def waveforms(*cycles: "Cycle", labels: Sequence[str] = ()) -> Figure:
     for pressure, port, colour in _ports(cycles):
         panels[0].axhline(pressure / 1e5, color=colour, linewidth=0.9, linestyle=":", label=port)
     handles, said = panels[0].get_legend_handles_labels()
-    figure.legend(handles, said, loc="outside upper left", fontsize=8, ncols=2)
+    as_written(figure.legend(handles, said, loc="outside upper left", fontsize=8, ncols=2))
     figure.align_ylabels(panels)
     panels[-1].set_xlabel(ANGLE)
     panels[-1].set_xlim(0, _degrees(waves[0])[-1])
@@ -190,4 +190,6 @@ def _degrees(wave: "Waveforms") -> np.ndarray:
 
 
 def _key_above(axes: Axes) -> None:
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), fontsize=8, borderaxespad=0.2)
+    as_written(
+        axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), fontsize=8, borderaxespad=0.2)
+    )

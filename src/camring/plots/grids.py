@@ -1,6 +1,7 @@
 """Maps over two numbers and curves over one, with the limits of the motor drawn in."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -104,6 +105,8 @@ def _fill(figure: Any, panels: list[Axes], grids: Sequence[Grid], name: str) -> 
             name, "has no value at any point", "look at the warnings, and narrow the ranges"
         )
     levels = levels_of(finite, shown.unit, name)
+    crossed = dict.fromkeys(each for grid in grids for each in grid.limits if _crossed(grid, each))
+    dashes = dict(zip(crossed, cycle(LIMIT_DASHES)))
     legend: dict[Any, Any] = {}
     filled = None
     for axes, grid in zip(panels, grids, strict=True):
@@ -112,11 +115,11 @@ def _fill(figure: Any, panels: list[Axes], grids: Sequence[Grid], name: str) -> 
             axes.contourf(*_places(grid), picture, colors=["#b9b9a0"], levels=1)
             _say_inside(axes, f"{finite.mean():.4g} {shown.unit} everywhere")
         else:
-            filled = _contours(axes, grid, name, levels)
-        legend |= {each.get_label(): each for each in _boundaries(axes, grid, name)}
+            filled = _contours(axes, grid, name, levels) or filled
+        legend |= {each.get_label(): each for each in _boundaries(axes, grid, name, dashes)}
         axes.grid(False)
         axes.set(xlabel=grid.axes[0].label, ylabel=grid.axes[1].label)
-        axes.set_title(grid.title)
+        axes.set_title(grid.title, parse_math=False)
     if filled is not None:
         label = f"{shown.label}, {shown.unit or '–'}"
         bar = figure.colorbar(filled, ax=panels, label=label, ticks=levels, format="%.4g")
@@ -130,9 +133,11 @@ def _places(grid: Grid) -> list[Float[np.ndarray, " place"]]:
 
 def _contours(
     axes: Axes, grid: Grid, name: str, levels: Float[np.ndarray, " level"]
-) -> QuadContourSet:
+) -> QuadContourSet | None:
     """Colours between levels and numbered lines on them; without a line the range in words."""
     shown, picture = quantity(name), np.ma.masked_invalid(grid.shown(name)).T
+    if not picture.count():
+        return None
     colours = "cividis_r" if shown.better < 0 else "cividis"
     norm = BoundaryNorm(levels, 256, extend="both")
     filled = axes.contourf(*_places(grid), picture, levels, cmap=colours, norm=norm, extend="both")
@@ -207,7 +212,7 @@ def sweep_curves(grid: Grid, names: Sequence[str]) -> Figure:
     ]
     if handles:
         figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
-    figure.suptitle(grid.title, x=0.01, ha="left", fontsize=9.5)
+    figure.suptitle(grid.title, x=0.01, ha="left", fontsize=9.5, parse_math=False)
     return figure
 
 
@@ -232,7 +237,13 @@ def levels_of(
     return levels[(levels > finite.min()) & (levels < finite.max())]
 
 
-def _boundaries(axes: Axes, grid: Grid, name: str) -> list[Any]:
+def _crossed(grid: Grid, result: str) -> bool:
+    """Whether a limit runs across the map."""
+    values, limit = grid.results[result], grid.limits[result]
+    return bool(np.any(values > limit) and np.any(values < limit))
+
+
+def _boundaries(axes: Axes, grid: Grid, name: str, dashes: Mapping[str, Any]) -> list[Any]:
     """The hatched and dashed limits, and what the legend says of them."""
     across, up = (axis.shown for axis in grid.axes)
     handles: list[Any] = []
@@ -248,13 +259,12 @@ def _boundaries(axes: Axes, grid: Grid, name: str) -> list[Any]:
         if np.any(values > 0):
             axes.contour(across, up, values, [0], colors=colour, linewidths=1.8)
         handles.append(Patch(facecolor="none", edgecolor=colour, hatch=hatch, label=words))
-    dashes = iter(LIMIT_DASHES)
-    for result, limit in grid.limits.items():
-        values = np.ma.masked_invalid(grid.results[result]).T
-        if not (np.any(values > limit) and np.any(values < limit)):
+    for result, dash in dashes.items():
+        limit = grid.limits.get(result)
+        if limit is None or not _crossed(grid, result):
             continue
+        values = np.ma.masked_invalid(grid.results[result]).T
         shown = quantity(result)
-        dash: Any = next(dashes, "--")
         axes.contour(across, up, values, [limit], colors=LIMIT, linestyles=[dash], linewidths=1.4)
         words = f"limit: {shown.label.lower()} {limit * shown.factor:.4g} {shown.unit}"
         handles.append(Line2D([], [], color=LIMIT, linestyle=dash, label=words))

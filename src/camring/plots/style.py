@@ -8,6 +8,7 @@ from typing import Any, ParamSpec
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 
 from camring.drawing.palette import INK, QUIET, design_style
 from camring.files.errors import InputError
@@ -77,6 +78,12 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
             return draw(*args, **kwargs)
 
     return drawn
+
+
+def as_written(legend: Legend) -> None:
+    """Names of motors and files in it as they are: a `$` begins no formula."""
+    for text in legend.get_texts():
+        text.set_parse_math(False)
 
 
 def sheet(width: float = 6.3, height: float = 3.9) -> Figure:

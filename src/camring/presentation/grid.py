@@ -117,8 +117,8 @@ class Folder:
             ) from None
         # The table comes last: where it stands, whatever was asked for stands beside it.
         if self.replace:
-            for table in (self.table, self.other_table):
-                table.unlink(missing_ok=True)
+            for earlier in (self.table, self.other_table, *self.pictures.values()):
+                earlier.unlink(missing_ok=True)
         written = self._draw(grid, names, beside)
         tables = {} if beside is None else {self.other_table: beside}
         for place, content in {**tables, self.table: grid}.items():
@@ -131,14 +131,15 @@ class Folder:
         from camring.plots import quadrant_map, result_map, result_maps, save, sweep_curves
 
         over_two = quadrant_map if grid.quadrants else result_map
+        all_of = [grid] if beside is None else [beside, grid]
         written = []
         for name, place in self.pictures.items():
             if len(grid.axes) == 1:
                 written.append(save(sweep_curves(grid, names), place))
-            elif not np.any(np.isfinite(grid.results[name])):
+            elif not any(np.any(np.isfinite(each.results[name])) for each in all_of):
                 say(f"No picture of {name}: it has no value at any point.", err=True)
-            elif beside is not None and np.any(np.isfinite(beside.results[name])):
-                written.append(save(result_maps([beside, grid], name), place))
+            elif beside is not None:
+                written.append(save(result_maps(all_of, name), place))
             else:
                 written.append(save(over_two(grid, name), place))
         return written

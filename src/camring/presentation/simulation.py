@@ -35,6 +35,7 @@ def print_table(found: Simulated) -> None:
         *braking_in_words(found),
         *idle_lobes_in_words(found),
         *radial_loads_in_words(found),
+        *left_out_in_words(found),
     ):
         out.print(sentence, markup=False)
     if found.numerical_error:
@@ -115,6 +116,16 @@ def radial_loads_in_words(found: Simulated) -> list[str]:
     return said
 
 
+def left_out_in_words(found: Simulated) -> list[str]:
+    """What a motor may have and this file does not, whose results would be zeros."""
+    motor, missing = found.file.system.motor, []
+    if motor.thermal is None:
+        missing.append("case temperature ([thermal])")
+    if motor.manifold is None and motor.return_manifold is None:
+        missing.append("manifolds and their lines ([motor.manifold], [motor.return_manifold])")
+    return [f"Not in this motor file, so not modelled: {', '.join(missing)}."] if missing else []
+
+
 def _radial_load(found: Simulated, place: int) -> dict[str, Any]:
     """As numbers, orders as keys."""
     motor, load = found.cycles[place].motor, found.radial_loads[place]
@@ -193,6 +204,8 @@ def _results(found: Simulated) -> Table:
     for name, quantities in GROUPS:
         table.add_row(f"[bold]{name}[/bold]")
         for quantity in quantities:
+            if quantity.rare and not any(each[quantity.name] for each in found.outcome.results):
+                continue
             values = [quantity.written(each[quantity.name]) for each in found.outcome.results]
             table.add_row(f"  {quantity.label}", quantity.unit, *values)
     return table

@@ -156,7 +156,12 @@ def _shown(results: Mapping[str, float]) -> list[str]:
 
 
 def _margins(finished: Finished) -> Table:
-    table = Table(title="Margin of each limit (negative: broken)", title_justify="left")
+    title = "Margin of each limit (negative: broken)"
+    if finished.given_file.envelope is not None:
+        title = (
+            "Least margin of each limit, envelope and all, as the search saw it (negative: broken)"
+        )
+    table = Table(title=title, title_justify="left")
     table.add_column("")
     table.add_column("given", justify="right")
     table.add_column("best", justify="right")
@@ -170,7 +175,7 @@ def _margins(finished: Finished) -> Table:
 def _margin(value: float) -> str:
     if math.isnan(value):
         return "–"
-    text = f"{0.0 - value:+.4f}".replace("-", "−")  # on the limit there is no minus
+    text = f"{100 * (0.0 - value):+.3g} %".replace("-", "−")  # on the limit there is no minus
     return text if value <= 0 else f"[red]{text}[/]"
 
 

@@ -87,7 +87,7 @@ class KeptProgram(Generic[Arguments, Result]):
     function
         Pure, and reached by its name in a module of this package.
     compiler_options
-        As `jax.jit` takes them; `SPARING` unless given.
+        As `jax.jit` takes them; unless given `SPARING`, for what is kept.
     """
 
     def __init__(
@@ -148,7 +148,7 @@ class KeptProgram(Generic[Arguments, Result]):
         sparing = SPARING if jax.default_backend() == "cpu" else {}
         chosen = sparing if self._options is None else self._options
         flags = os.environ.get("XLA_FLAGS", "")
-        return {name: value for name, value in chosen.items() if name not in flags}
+        return {name: value for name, value in chosen.items() if f"--{name}=" not in flags}
 
     def _compiled(self, path: Path, given: Any, arrays: list[Any]) -> Program:
         function, result = between_arrays(self._function, given)

@@ -25,7 +25,7 @@ from camring.report.study_motors import StudyMotors, study_motors
 from camring.report.trials import search_of, starting_note
 from camring.report.verdicts import read_verdict, validated_trial
 from camring.studies.given_up import given_up, sentences
-from camring.studies.study_folder import StudyFolder
+from camring.studies.study_folder import FOUND_BY, StudyFolder
 from camring.studies.validation import BEST
 
 __all__ = ["gather", "gather_comparison", "gather_single"]
@@ -67,7 +67,9 @@ def gather(folder: str | Path, at_hand: StudyMotors | None = None) -> ReportData
         best_record, last = _closest(given, records), None
         label = "closest"
         if best_record is not None:
-            last = parse_motor_file(given.with_design(best_record.point.tolist()), study.best_path)
+            last = parse_motor_file(
+                given.with_design(best_record.point.tolist(), FOUND_BY), study.best_path
+            )
     system = given.system
     weights = [float(point.weight) for point in system.operating_points]
     space = given.design_space
@@ -209,7 +211,9 @@ def _best_motor(
     """
     if best_record is None or given.design_space is None:
         return None
-    return parse_motor_file(given.with_design(best_record.point.tolist()), study.best_path)
+    return parse_motor_file(
+        given.with_design(best_record.point.tolist(), FOUND_BY), study.best_path
+    )
 
 
 def _altered(study: StudyFolder, best: MotorFile | None, best_record: Record | None) -> list[str]:

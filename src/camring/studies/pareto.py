@@ -250,7 +250,7 @@ def _solved_again(model: Traded, front: Front, count: int) -> tuple[list[Comprom
     lowest, width = box_of(losses)
     for place in searched_best[evenly_spread((losses - lowest) / width, round(SPARE * count))]:
         point = front.points[place]
-        text = model.file.with_design(point.tolist())
+        text = model.file.with_design(point.tolist(), "camring pareto")
         motor = parse_motor_file(text, model.file.path)
         outcome = outcome_of(assess(motor.system, motor.goal, Resolution.fine()))
         values = model.summed(outcome.results)

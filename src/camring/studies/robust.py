@@ -72,7 +72,7 @@ class RobustDesign:
 
     def text_of(self, name: str) -> str:
         """The motor file of a design."""
-        return self.file.with_design(self.points[name].tolist())
+        return self.file.with_design(self.points[name].tolist(), "camring robust")
 
 
 def robust_design(

@@ -20,6 +20,7 @@ from camring.studies.store import Store
 
 GIVEN_NAME = "given.toml"
 BEST_NAME = "best.toml"
+FOUND_BY = "camring optimise"
 VALIDATION_NAME = "validation.json"
 REPORT_NAME = "report.html"
 

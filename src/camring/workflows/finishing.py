@@ -14,7 +14,7 @@ from camring.report.study_motors import StudyMotors, study_motors
 from camring.studies.envelope_check import begin_check
 from camring.studies.given_up import given_up
 from camring.studies.second_solver import SecondSolver
-from camring.studies.study_folder import StudyFolder
+from camring.studies.study_folder import FOUND_BY, StudyFolder
 from camring.studies.validation import (
     BEST,
     GIVEN,
@@ -60,7 +60,7 @@ def finish(
         eyes = "" if without_second_solver(given) else " and with SciPy's stiff solver"
         asked = f", and asking `{command}` again" if command else ""
         say(f"Looking again at finer resolution{eyes}{asked}.")
-        text = given.with_design(best.point.tolist())
+        text = given.with_design(best.point.tolist(), FOUND_BY)
         claimed = {GIVEN: records[0].outcome, BEST: best.outcome}
         motor = parse_motor_file(text, study.best_path)
         best_again = begin_again(motor, second)

@@ -94,8 +94,11 @@ class Number(Entry):
             least = "above zero" if self.low > 0 else "zero or more"
             raise Unfit(f"is {quote(value)} but must be {least}", self.way_out)
         if not self.low <= number <= self.high:
+            bare = not isinstance(value, str) and self.unit != "1"
+            read = f", without a unit and so in {self.unit}," if bare else ""
             raise Unfit(
-                f"is {quote(value)} but must lie between {self._limits_like(value)}", self.way_out
+                f"is {quote(value)}{read} but must lie between {self._limits_like(value)}",
+                self.way_out,
             )
         return number
 

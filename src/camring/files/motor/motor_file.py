@@ -21,7 +21,7 @@ from camring.files.motor.soundness import require_sound
 from camring.files.motor.tables import EvaluatorTable, FileTables, SearchTable
 from camring.files.motor.tolerances import Tolerances, build_tolerances
 from camring.files.motor.translate import input_error
-from camring.files.motor.writer import changed_text
+from camring.files.motor.writer import changed_text, found_text
 from camring.files.shapes.fitted import (
     FittedCam,
     fitted_cam,
@@ -92,8 +92,13 @@ class MotorFile:
         """What a folder keeps of the file: its bytes, or its text where a profile was fitted."""
         return content if self.fitted_cam is None else self.text.encode()
 
-    def with_design(self, unit_point: Sequence[float]) -> str:
+    def with_design(self, unit_point: Sequence[float], found_by: str = "") -> str:
         """The text of a complete motor file of one design; comments stay.
+
+        Parameters
+        ----------
+        found_by
+            The command that found it, for a remark at the top; none without it.
 
         Raises
         ------
@@ -103,7 +108,8 @@ class MotorFile:
         if self.design_space is None:
             raise missing_design_space(self.path)
         values = self.design_space.document_values(self.system, unit_point)
-        return changed_text(self.text, self.document, values, self.choices)
+        text = changed_text(self.text, self.document, values, self.choices)
+        return found_text(text, found_by) if found_by else text
 
 
 def missing_design_space(path: Path) -> InputError:

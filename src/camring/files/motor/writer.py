@@ -8,6 +8,7 @@ from camring.files.motor.entries import Entry, Number, Numbers
 from camring.files.motor.keys import Choices, key_map
 from camring.files.units import UnitError, from_si, split_quantity, to_si
 
+_FOUND = re.compile(r"\A# A design found by `.*\n# what they say of numbers .*\n")
 _HEADER = re.compile(r"\s*\[(?P<table>[^\[\]]+)\]\s*(#.*)?")
 
 
@@ -33,6 +34,15 @@ def changed_text(
         pass
     # Inline tables or dotted keys: say the same without the layout.
     return whole_text(wanted)
+
+
+def found_text(text: str, command: str) -> str:
+    """The text of a design below a remark that says where it comes from, and only one such."""
+    remark = (
+        f"# A design found by `{command}`. Remarks below are of the motor file it began with:\n"
+        "# what they say of numbers may be true no longer.\n"
+    )
+    return remark + _FOUND.sub("", text)
 
 
 def _look_up(document: Any, path: str) -> Any:
