@@ -156,12 +156,7 @@ def _shown(results: Mapping[str, float]) -> list[str]:
 
 
 def _margins(finished: Finished) -> Table:
-    title = "Margin of each limit (negative: broken)"
-    if finished.given_file.envelope is not None:
-        title = (
-            "Least margin of each limit, envelope and all, as the search saw it (negative: broken)"
-        )
-    table = Table(title=title, title_justify="left")
+    table = Table(title="Least margins in the search (negative: broken)", title_justify="left")
     table.add_column("")
     table.add_column("given", justify="right")
     table.add_column("best", justify="right")
