@@ -1,9 +1,17 @@
-"""What a named oil does not change in a motor, in a sentence."""
+"""A motor file's named oil: at other temperatures, and what it does not change, in a sentence."""
 
+import numpy as np
+
+from camring.files.errors import InputError
 from camring.files.motor import MotorFile
+from camring.files.motor.build import build_system
+from camring.files.motor.document import at_temperature
+from camring.files.motor.motor_file import validated
+from camring.physics.oil.fluid import AbstractFluid
+from camring.physics.oil.presets import OILS
 from camring.physics.viscosity_use import reads_viscosity
 
-__all__ = ["unread_viscosity"]
+__all__ = ["oils_at", "require_oil", "unread_viscosity"]
 
 _WAY_OUT = (
     'give [motor.gap] with clearance and length, leakage = "viscous" in [motor], or '
@@ -29,3 +37,22 @@ def unread_viscosity(file: MotorFile) -> list[str]:
         f"No law of this motor reads a viscosity: {listed} set density, bulk modulus and vapour "
         f"pressure only, and leakage and friction are the same hot and cold; {_WAY_OUT}."
     ]
+
+
+def require_oil(file: MotorFile) -> None:
+    """Refuse an axis of temperatures where the file names no oil."""
+    if "oil" not in file.document["fluid"]:
+        raise InputError(
+            "--temperature",
+            f"has no effect while {file.path.name} names no oil",
+            f'name it, oil = "{OILS[1]}" in [fluid], with its temperature',
+        )
+
+
+def oils_at(file: MotorFile, temperatures: np.ndarray) -> list[AbstractFluid]:
+    """The file's oil at each temperature."""
+    found = []
+    for kelvin in temperatures:
+        choices, tables = validated(at_temperature(file.document, f"{float(kelvin)!r} K"))
+        found.append(build_system(tables, choices).fluid)
+    return found

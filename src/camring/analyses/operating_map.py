@@ -7,21 +7,17 @@ import numpy as np
 from jaxtyping import Array
 
 from camring.analyses.grid import Axis, Grid
-from camring.analyses.oil_use import unread_viscosity
+from camring.analyses.oil_use import oils_at, require_oil, unread_viscosity
 from camring.analyses.ranges import axis, point_counts
 from camring.evaluation.simulations import repeated, results_of_many, stacked
 from camring.files.errors import InputError
 from camring.files.motor import MotorFile
-from camring.files.motor.build import build_system
-from camring.files.motor.document import at_temperature, printable
+from camring.files.motor.document import printable
 from camring.files.motor.entries import Number, Unfit
 from camring.files.motor.keys import key_map
-from camring.files.motor.motor_file import validated
 from camring.files.units import from_si, to_si
 from camring.numerics.quantity import real
 from camring.objective.constraints import UPPER_LIMITS
-from camring.physics.oil.fluid import AbstractFluid
-from camring.physics.oil.presets import OILS
 from camring.physics.operating_point import OperatingPoint
 
 SPEED, SUPPLY = "operating_points.speed", "operating_points.supply_pressure"
@@ -102,7 +98,7 @@ def maps_beside(
     try:
         there = _driving_point(other, operating_point)
         if TEMPERATURE in values:
-            _require_oil(other)
+            require_oil(other)
         others = {each.key: _checked(each, other) for each in axes}
         _require_drop(axes, others, there)
     except InputError as error:
@@ -142,7 +138,7 @@ def _over(
 
     fluids = repeated(system.fluid, count)
     if TEMPERATURE in values:
-        warm = _oils(file, values[TEMPERATURE])
+        warm = oils_at(file, values[TEMPERATURE])
         fluids = stacked([warm[k] for k in place[TEMPERATURE]])
     asked = replace(
         repeated(point, count),
@@ -211,19 +207,10 @@ def _ranges(
             "is a third axis beside --speed and --pressure, and a picture has two",
             "leave one of the three out: it is then held at the operating point's",
         )
-    _require_oil(file)
+    require_oil(file)
     if pressure is not None:
         return {SUPPLY: pressure, TEMPERATURE: temperature}
     return {SPEED: speed or _usual_speeds(file), TEMPERATURE: temperature}
-
-
-def _require_oil(file: MotorFile) -> None:
-    if "oil" not in file.document["fluid"]:
-        raise InputError(
-            "--temperature",
-            f"has no effect while {file.path.name} names no oil",
-            f'name it, oil = "{OILS[1]}" in [fluid], with its temperature',
-        )
 
 
 def _require_drop(
@@ -239,15 +226,6 @@ def _require_drop(
                 f"pressure of {back / BAR:.4g} bar",
                 "raise it, or choose another operating point with --point; pressures are absolute",
             )
-
-
-def _oils(file: MotorFile, temperatures: np.ndarray) -> list[AbstractFluid]:
-    """The file's oil at each temperature."""
-    found = []
-    for kelvin in temperatures:
-        choices, tables = validated(at_temperature(file.document, f"{float(kelvin)!r} K"))
-        found.append(build_system(tables, choices).fluid)
-    return found
 
 
 def point_of(file: MotorFile, number: int) -> OperatingPoint:
