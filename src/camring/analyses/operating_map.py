@@ -70,31 +70,33 @@ def operating_map(
     >>> found.results["efficiency"].shape, int(found.faults.max())
     ((4, 3), 0)
     """
-    point = _driving_point(file, operating_point)
-    counts = point_counts(points, 2, ON_EACH_AXIS)
-    axes, values = _axes(file, point, _ranges(file, point, speed, pressure, temperature), counts)
+    axes, values = _asked(file, operating_point, speed, pressure, temperature, points)
     return _over(file, axes, values, operating_point)
 
 
 def maps_beside(
-    file: MotorFile, other: MotorFile, operating_point: int = 1, **ranges: str | None
+    file: MotorFile,
+    other: MotorFile,
+    *,
+    speed: str | None = None,
+    pressure: str | None = None,
+    temperature: str | None = None,
+    points: str | None = None,
+    operating_point: int = 1,
 ) -> tuple[Grid, Grid]:
     """The map of a motor, and that of another over the same values.
 
     Parameters
     ----------
-    ranges
-        As `operating_map`, of the first motor.
+    speed, pressure, temperature, points, operating_point
+        As `operating_map`; ranges that are left out are those of the first motor.
 
     Raises
     ------
     InputError
         As `operating_map`, of either motor, before anything is simulated.
     """
-    point = _driving_point(file, operating_point)
-    counts = point_counts(ranges.pop("points", None), 2, ON_EACH_AXIS)
-    given = (ranges.get(name) for name in ("speed", "pressure", "temperature"))
-    axes, values = _axes(file, point, _ranges(file, point, *given), counts)
+    axes, values = _asked(file, operating_point, speed, pressure, temperature, points)
     try:
         there = _driving_point(other, operating_point)
         if TEMPERATURE in values:
@@ -107,6 +109,20 @@ def maps_beside(
         _over(file, axes, values, operating_point),
         _over(other, axes, others, operating_point),
     )
+
+
+def _asked(
+    file: MotorFile,
+    operating_point: int,
+    speed: str | None,
+    pressure: str | None,
+    temperature: str | None,
+    points: str | None,
+) -> tuple[tuple[Axis, ...], dict[str, np.ndarray]]:
+    """Both axes of a map, and their values in SI by key."""
+    point = _driving_point(file, operating_point)
+    counts = point_counts(points, 2, ON_EACH_AXIS)
+    return _axes(file, point, _ranges(file, point, speed, pressure, temperature), counts)
 
 
 def _driving_point(file: MotorFile, operating_point: int) -> OperatingPoint:

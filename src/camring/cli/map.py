@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from camring.analyses.grid import Grid
+    from camring.files.motor import MotorFile
 
 USUAL = ("efficiency", "torque_ripple", "max_pressure")
 IN_QUADRANTS = ("port_efficiency", *USUAL[1:])
@@ -127,28 +128,19 @@ def map(
     folder = Folder(out, "map.csv", names, picture.value, force, decimal)
     files = ChargeFiles(out, picture.value, force, decimal) if charge else None
     file = read_motor_file(motor)
-    try:
-        other = None if beside is None else read_motor_file(beside)
-    except InputError as error:
-        raise error.of(str(beside)) from None
+    other = None if beside is None else _read_beside(beside)
+    asked = {"speed": speed, "pressure": pressure, "temperature": temperature, "points": points}
+    compared = None
     with Spoken("Simulating the map."):
-        compared = None
         if quadrants:
             found = over_both_signs(
                 file, speed=speed, pressure=pressure, points=points, operating_point=point
             )
+        elif other is not None:
+            found, compared = maps_beside(file, other, operating_point=point, **asked)
+            found, compared = _headed(found, file), _headed(compared, other)
         else:
-            asked = {
-                "speed": speed,
-                "pressure": pressure,
-                "temperature": temperature,
-                "points": points,
-            }
-            if other is None or beside is None:
-                found = operating_map(file, operating_point=point, **asked)
-            else:
-                found, compared = maps_beside(file, other, point, **asked)
-                found, compared = _headed(found, motor), _headed(compared, beside)
+            found = operating_map(file, operating_point=point, **asked)
     curve = None
     if files is not None:
         with Spoken("Seeking the charge pressure."):
@@ -169,11 +161,23 @@ def map(
     say(f"Wrote {', '.join(each.name for each in written)} in {out}.", err=json)
 
 
-def _headed(grid: "Grid", source: Path) -> "Grid":
+def _read_beside(path: Path) -> "MotorFile":
+    """The second of two motor files, which refusals name."""
+    from camring.files.errors import InputError
+    from camring.files.motor import read_motor_file
+    from camring.files.motor.document import printable
+
+    try:
+        return read_motor_file(path)
+    except InputError as error:
+        raise error.of(printable(path)) from None
+
+
+def _headed(grid: "Grid", file: "MotorFile") -> "Grid":
     """Named by its file: a best design has the name of the motor it was found from."""
     from camring.files.motor.document import printable
 
-    return replace(grid, title=f"{printable(source)}\n{grid.title.partition(chr(10))[2]}")
+    return replace(grid, title=f"{printable(file.path)}\n{grid.title.partition(chr(10))[2]}")
 
 
 def _forwards(speeds: "np.ndarray") -> "np.ndarray":

@@ -104,7 +104,6 @@ class Spoken:
         printed(self._console, sentence)
 
 
-NOT_FINITE = "a result or a limit is no finite number"
 FIRST_RUN = "Programs for motors of this kind that never ran here are compiled, for some minutes."
 SIMULATING = f"Simulating. {FIRST_RUN}"
 
@@ -171,7 +170,7 @@ class SearchProgress:
         if record.failed and not self._any_failed:
             self._any_failed = True
             self.say(
-                f"Evaluation {record.trial} failed: {record.outcome.failure or NOT_FINITE}. "
+                f"Evaluation {record.trial} failed: {record.failure}. "
                 "The search goes on; further failures are counted in the report."
             )
         if record.feasible:

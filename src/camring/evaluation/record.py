@@ -13,6 +13,9 @@ NOT_NUMBERED = -1
 """The trial of an evaluation that was made ahead of its turn, or has not been kept yet."""
 
 
+NOT_FINITE = "a result or a limit is no finite number"
+
+
 @dataclass(frozen=True, eq=False)
 class Record:
     """One evaluation of a study: a design, its outcome, its number and its time.
@@ -47,6 +50,11 @@ class Record:
         outcome = self.outcome
         numbers = [outcome.objective, *outcome.constraints.values()]
         return outcome.failure is not None or not all(map(math.isfinite, numbers))
+
+    @property
+    def failure(self) -> str:
+        """What failed, in words; empty where nothing did."""
+        return (self.outcome.failure or NOT_FINITE) if self.failed else ""
 
     @property
     def feasible(self) -> bool:

@@ -13,6 +13,7 @@ from jaxtyping import Array, Float
 
 from camring.geometry.cam import RadialCam
 from camring.numerics.batch import take
+from camring.numerics.extremum import rise_to_turn
 from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import combine, horner
@@ -88,21 +89,8 @@ def round_the_cam(cam: RadialCam, parts: int = SAMPLES_PER_SPAN) -> RoundTheCam:
     jet = Jet(*(each.reshape(parts + 1, count, -1) for each in jet))
     step = cam.period / count / parts
     value, slope = jet.value, jet.first * step
-    start, end, rise = slope[:-1], slope[1:], value[1:] - value[:-1]
-    # The cubic through both values and slopes has the slope start + linear t + square t^2.
-    square = 3 * (start + end) - 6 * rise
-    linear = end - start - square
-    turns = start * end < 0
-    discriminant = linear**2 - 4 * square * start
-    apart = turns & (discriminant > 0)  # but for rounding always, where the slope turns
-    root = jnp.where(apart, jnp.sqrt(jnp.where(apart, discriminant, 1.0)), 0.0)
-    half = -(linear + jnp.where(linear < 0, -root, root)) / 2
-    one = start / jnp.where(turns, half, 1.0)
-    other = half / jnp.where(turns & (square != 0), square, 1.0)
-    # A root at an end, one rounding outside, would else be taken for the other, far away.
-    turn = jnp.clip(jnp.where((one > 0) & (one < 1), one, other), 0.0, 1.0)
-    there = ((square / 3 * turn + linear / 2) * turn + start) * turn
-    return RoundTheCam(jet, value[:-1] + jnp.where(turns, there, rise))
+    there = rise_to_turn(slope[:-1], slope[1:], value[1:] - value[:-1])
+    return RoundTheCam(jet, value[:-1] + there)
 
 
 def _count(cam: RadialCam) -> int:

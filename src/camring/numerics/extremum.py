@@ -83,10 +83,27 @@ def total_variation(
     where the slope turns, it is that to and from the turning point of the cubic
     through both values and slopes.
     """
-    start, end = slope[:-1] * spacing, slope[1:] * spacing
     rise = value[1:] - value[:-1]
+    there = rise_to_turn(slope[:-1] * spacing, slope[1:] * spacing, rise)
+    return jnp.sum(jnp.abs(there) + jnp.abs(rise - there))
+
+
+def rise_to_turn(
+    start: Float[Array, "*grid"], end: Float[Array, "*grid"], rise: Float[Array, "*grid"]
+) -> Float[Array, "*grid"]:
+    """What the cubic through both values and slopes rises until its slope changes sign.
+
+    All of its rise where both slopes have one sign.
+
+    Parameters
+    ----------
+    start, end
+        Slopes at both ends, times the element's width.
+    rise
+        Of the values, from one end to the other.
+    """
     turns = start * end < 0
-    # The cubic's slope is start + linear t + square t^2; one root lies between 0 and 1.
+    # Its slope is start + linear t + square t^2; one root lies between 0 and 1.
     square = 3 * (start + end) - 6 * rise
     linear = end - start - square
     # Not below zero but by rounding, where both roots are one: a curve that runs out into a flat.
@@ -95,9 +112,8 @@ def total_variation(
     root = jnp.where(apart, jnp.sqrt(jnp.where(apart, discriminant, 1.0)), 0.0)
     half = -(linear + jnp.where(linear < 0, -root, root)) / 2
     one = start / jnp.where(turns, half, 1.0)
-    within = (one > 0) & (one < 1)
-    other = half / jnp.where(turns & ~within & (square != 0), square, 1.0)
-    # One that lies at an end may by rounding lie beyond it, and the other then anywhere.
-    turn = jnp.clip(jnp.where(within, one, other), 0.0, 1.0)
+    other = half / jnp.where(turns & (square != 0), square, 1.0)
+    # A root at an end, one rounding outside, would else be taken for the other, far away.
+    turn = jnp.clip(jnp.where((one > 0) & (one < 1), one, other), 0.0, 1.0)
     there = ((square / 3 * turn + linear / 2) * turn + start) * turn
-    return jnp.sum(jnp.abs(jnp.where(turns, 2 * there - rise, rise)))
+    return jnp.where(turns, there, rise)

@@ -97,7 +97,7 @@ def _nothing_found(records: Sequence[Record]) -> Validation:
     """No design keeps every limit: which one comes closest, and what it breaks."""
     closest = closest_of(records)
     if closest is None:
-        reason = f"; the last: {records[-1].outcome.failure}" if records else ""
+        reason = f"; the last: {records[-1].failure}" if records else ""
         return Validation(-1, False, f"Not validated: every evaluation failed{reason}.", [], {})
     worst = max(closest.outcome.constraints, key=lambda name: closest.outcome.constraints[name])
     excess = closest.outcome.constraints[worst]

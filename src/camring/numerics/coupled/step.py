@@ -124,15 +124,13 @@ def _linear(equation: CoupledEquation, forcing: Forcing, stages: Array) -> _Line
     def by_own_state(s: int) -> Array:
         return sum_of([by_total[t][s][:, None] * drawn_by_own[t] for t in numbers])
 
-    return computed_once(
-        _Linear(
-            rate,
-            stop_gradient(by_own),
-            stop_gradient(tuple(slope for slope, _ in by_each)),
-            shared_rate,
-            stop_gradient(tuple(map(by_own_state, numbers))),
-            stop_gradient(tuple(tuple(by_shared_state(s, t) for t in numbers) for s in numbers)),
-        )
+    return _Linear(
+        rate,
+        stop_gradient(by_own),
+        stop_gradient(tuple(slope for slope, _ in by_each)),
+        shared_rate,
+        stop_gradient(tuple(map(by_own_state, numbers))),
+        stop_gradient(tuple(tuple(by_shared_state(s, t) for t in numbers) for s in numbers)),
     )
 
 
@@ -143,7 +141,7 @@ def coupled_step(
 
     Returns states at the nodes and the stages, the shared ones last.
     """
-    here = _linear(equation, forcing, stages)
+    here = computed_once(_linear(equation, forcing, stages))
     links, numbers = equation.links_of(stages), range(equation.shared_count)
     integrals = STAGE_INTEGRALS
     step = stop_gradient(width)
