@@ -66,6 +66,28 @@ def misplaced(path):
             yield name
 
 
+def losing_slopes(path):
+    """Calls whose derivative asks which number equals the result (`numerics/selection.py`)."""
+    calls = [
+        each.func for each in ast.walk(ast.parse(path.read_text())) if isinstance(each, ast.Call)
+    ]
+    for call in calls:
+        if (
+            isinstance(call, ast.Attribute)
+            and call.attr
+            in (
+                "maximum",
+                "minimum",
+                "clip",
+                "max",
+                "min",
+            )
+            and isinstance(call.value, ast.Name)
+            and call.value.id == "jnp"
+        ):
+            yield call.attr
+
+
 def described(path):
     text = path.read_text()
     return not text.strip() or bool(ast.get_docstring(ast.parse(text)))
@@ -73,6 +95,14 @@ def described(path):
 
 def test_what_knows_no_motor_file_loads_nothing_that_reads_or_draws():
     wrong = {str(path): list(misplaced(path)) for path in FILES if path.parent != SOURCE}
+    assert not {path: names for path, names in wrong.items() if names}
+
+
+def test_no_slope_hangs_on_two_numbers_being_equal():
+    """A compiler that rounds one of them otherwise takes the slope away."""
+    differentiated = {"numerics", "geometry", "physics", "metrics", "objective", "search"}
+    there = [path for path in FILES if package(path) in differentiated]
+    wrong = {str(path): list(losing_slopes(path)) for path in there if path.name != "selection.py"}
     assert not {path: names for path, names in wrong.items() if names}
 
 
@@ -92,6 +122,9 @@ def test_a_file_in_the_wrong_package_would_be_found(tmp_path, monkeypatch):
     path = tmp_path / "physics" / "law.py"
     path.write_text("import torch\nfrom pint import Unit\nimport jax\n")
     assert list(misplaced(path)) == ["torch", "pint"]
+    assert not list(losing_slopes(path))
+    path.write_text("x = jnp.maximum(y, 0) + jnp.clip(y, 0) + np.max(y)\n")
+    assert list(losing_slopes(path)) == ["maximum", "clip"]
     assert not described(path)
 
 

@@ -17,6 +17,7 @@ from camring.numerics.extremum import rise_to_turn
 from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import combine, horner
+from camring.numerics.selection import larger, largest, smaller, smallest
 from camring.numerics.spline import Jet, basis_matrix, floor_past_rounding
 
 SAMPLES_PER_SPAN = 8
@@ -58,8 +59,8 @@ class RoundTheCam(NamedTuple):
     def extremes(self) -> tuple[Q[Float[Array, " batch"], "m"], Q[Float[Array, " batch"], "m"]]:
         """Smallest and largest pitch radius."""
         value, turning = self.radius.value, self.turning_radius
-        lowest = jnp.minimum(jnp.min(value, axis=(0, 1)), jnp.min(turning, axis=(0, 1)))
-        highest = jnp.maximum(jnp.max(value, axis=(0, 1)), jnp.max(turning, axis=(0, 1)))
+        lowest = smaller(smallest(value, axis=(0, 1)), smallest(turning, axis=(0, 1)))
+        highest = larger(largest(value, axis=(0, 1)), largest(turning, axis=(0, 1)))
         return lowest, highest
 
     def rises(

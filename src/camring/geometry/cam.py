@@ -16,6 +16,7 @@ import numpy as np
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q, real
+from camring.numerics.selection import smallest
 from camring.numerics.spline import (
     Jet,
     evaluate_periodic,
@@ -157,7 +158,7 @@ class PlanarCam(AbstractCam):
         """Smallest rate of polar angle against the curve parameter; negative: not star-shaped."""
         parameter = self.period * jnp.arange(16 * self.control_count) / (16 * self.control_count)
         curve = self._curve(parameter)
-        return jnp.min(jnp.imag(curve.first / curve.value))
+        return smallest(jnp.imag(curve.first / curve.value))
 
     def breakpoints(self) -> Q[Float[Array, " control"], "rad"]:
         parameter = jnp.asarray(knots(self.control_count, self.period, self.degree))

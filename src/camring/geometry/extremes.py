@@ -6,6 +6,7 @@ from jaxtyping import Array, Float
 
 from camring.geometry.cam import AbstractCam
 from camring.numerics.quantity import Q
+from camring.numerics.selection import bounded
 
 _SAMPLES_PER_SPAN = 8
 _NEWTON_STEPS = 4
@@ -27,7 +28,7 @@ def extreme_radius(cam: AbstractCam, sign: int) -> Q[Float[Array, ""], "m"]:
     for _ in range(_NEWTON_STEPS):
         radius = cam.pitch_radius(angle)
         bend = jnp.where(radius.second == 0, 1.0, radius.second)
-        angle = jnp.clip(angle - radius.first / bend, best - spacing, best + spacing)
+        angle = bounded(angle - radius.first / bend, best - spacing, best + spacing)
     angle = jax.lax.stop_gradient(angle)
     start = jax.lax.stop_gradient(best)
     refined, sampled = cam.pitch_radius(angle).value, cam.pitch_radius(start).value

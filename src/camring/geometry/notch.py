@@ -6,6 +6,7 @@ from jaxtyping import Array, Float
 
 from camring.geometry.window import AbstractWindow
 from camring.numerics.quantity import Q, real
+from camring.numerics.selection import bounded, smaller
 
 
 class ReliefNotch(eqx.Module):
@@ -35,9 +36,9 @@ class ReliefNotch(eqx.Module):
         width: Q[Float[Array, ""], "rad"],
     ) -> Q[Float[Array, "*grid"], "1"]:
         """Open share of port and groove together, in [0, 1]."""
-        along = jnp.clip((distance + width / 2 + self.angle) / self.angle, 0, 1)
+        along = bounded((distance + width / 2 + self.angle) / self.angle, 0, 1)
         groove = jnp.where(distance < 0, self.area * along**2, 0.0)
-        return jnp.minimum(window.opening(distance, width) + groove, 1.0)
+        return smaller(window.opening(distance, width) + groove, 1.0)
 
     def edges(
         self, window: AbstractWindow, width: Q[Float[Array, ""], "rad"]

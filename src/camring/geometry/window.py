@@ -14,6 +14,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q, real
+from camring.numerics.selection import bounded, smaller, smallest
 
 Angle = Q[Float[Array, "*grid"], "rad"]
 Width = Q[Float[Array, ""], "rad"]
@@ -117,13 +118,13 @@ class TabulatedWindow(AbstractWindow):
         part = jnp.where(rise > 0, (share - before) / jnp.where(rise > 0, rise, 1.0), 0.0)
         crossing = self.position[:-1] + part * jnp.diff(self.position)
         reached = (before <= share) & (share <= after) & (rise > 0) & (crossing <= 0)
-        return jnp.min(jnp.where(reached, crossing, 0.0)) * width / 2
+        return smallest(jnp.where(reached, crossing, 0.0)) * width / 2
 
 
 def _uncovered(distance: Angle, width: Width, ramp: Array) -> Q[Float[Array, "*grid"], "1"]:
     """Share of a ramp that the port has come past the window's nearer edge, in [0, 1]."""
     half = width / 2
-    return jnp.clip((half - jnp.abs(distance)) / (ramp * half), 0, 1)
+    return bounded((half - jnp.abs(distance)) / (ramp * half), 0, 1)
 
 
 def _shoulders(width: Width, ramp: Array) -> Q[Float[Array, " edge"], "rad"]:
@@ -136,7 +137,7 @@ def _shoulders(width: Width, ramp: Array) -> Q[Float[Array, " edge"], "rad"]:
 def lens_share(overlap: Q[Float[Array, "*grid"], "1"]) -> Q[Float[Array, "*grid"], "1"]:
     """Area common to two equal circles over that of one; `overlap` over a diameter, in [0, 1]."""
     half_angle = 2 * jnp.arcsin(jnp.sqrt(overlap / 2))
-    return jnp.minimum((2 * half_angle - jnp.sin(2 * half_angle)) / pi, 1.0)
+    return smaller((2 * half_angle - jnp.sin(2 * half_angle)) / pi, 1.0)
 
 
 @lens_share.defjvp
@@ -152,10 +153,10 @@ def lens_overlap(share: Q[Float[Array, ""], "1"]) -> Q[Float[Array, ""], "1"]:
     Newton on the central angle, whose equation `t - sin t = pi share` is
     Kepler's with eccentricity one; `share` within [0, 1].
     """
-    mean = pi * jnp.clip(share, 0.0, 1.0)
-    angle = jnp.minimum(jnp.cbrt(6 * mean), pi)
+    mean = pi * bounded(share, 0.0, 1.0)
+    angle = smaller(jnp.cbrt(6 * mean), pi)
     for _ in range(12):
         slope = 1 - jnp.cos(angle)
         safe = jnp.where(slope > 0, slope, 1.0)
-        angle = jnp.clip(angle - (angle - jnp.sin(angle) - mean) / safe, 0.0, pi)
+        angle = bounded(angle - (angle - jnp.sin(angle) - mean) / safe, 0.0, pi)
     return 1 - jnp.cos(angle / 2)

@@ -23,6 +23,7 @@ from camring.numerics.extremum import vertex_value
 from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import horner
+from camring.numerics.selection import largest
 from camring.physics.batch_cycle import radial
 from camring.physics.chamber import chamber_at
 from camring.physics.cycle import Cycle
@@ -153,4 +154,4 @@ def of_all_pistons(
 def _largest_sample(wave: Float[Array, "place batch"]) -> Float[Array, " batch"]:
     """Top of the parabolas through neighbouring samples of a periodic wave."""
     before, after = jnp.roll(wave, 1, axis=0), jnp.roll(wave, -1, axis=0)
-    return jnp.max(vertex_value(before, wave, after), axis=0)
+    return largest(vertex_value(before, wave, after), axis=0)

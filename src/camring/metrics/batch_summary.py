@@ -19,11 +19,12 @@ from camring.metrics.displacement import driving
 from camring.metrics.power_balance import power_balance
 from camring.metrics.rating_life import Endured, endured
 from camring.metrics.summary import Measured, Metrics, results
-from camring.numerics.batch_extremum import highest_of_cubics, largest
+from camring.numerics.batch_extremum import highest_of_cubics, highest_of_samples
 from camring.numerics.extremum import vertex_value
 from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import STAGES, combine
+from camring.numerics.selection import largest
 from camring.physics.batch_cycle import BatchCycle, operating_at
 from camring.physics.cycle import Cycle
 from camring.physics.heat.collocation import at_collocation_points
@@ -61,7 +62,7 @@ def summarise_batch(
 
     lowest, highest = cam.extremes()
     zero = jnp.zeros_like(lowest)
-    least_pressure = -largest(-corners.chamber_pressure)
+    least_pressure = -highest_of_samples(-corners.chamber_pressure)
     measured = Measured(
         power=replace(power_balance(cycle, samples), line_loss=zero, return_line_loss=zero),
         mean_torque=motor.pistons * samples.mean(piston.torque),
@@ -76,12 +77,12 @@ def summarise_batch(
         rises=motor.cam.repeats * cam.rises(_fed(motor, cam)),
         mean_volume=samples.mean(piston.chamber.volume),
         lowest_pressure=least_pressure,
-        highest_pressure=largest(corners.chamber_pressure),
+        highest_pressure=highest_of_samples(corners.chamber_pressure),
         supply_pressure_swing=zero,
         return_pressure_swing=zero,
         cavitation=cavitation(cycle, corners.chamber_pressure, least_pressure, PLACES),
-        least_force=-largest(-corners.force),
-        most_stress=largest(corners.contact_stress),
+        least_force=-highest_of_samples(-corners.force),
+        most_stress=highest_of_samples(corners.contact_stress),
         endured=Endured(*map(samples.mean, endured(piston, motor))),
         least_undercut=-_largest_part(-undercut_factor(cam.radius, motor.roller.radius)),
         most_tilt=_largest_part(jnp.abs(pressure_angle(cam.radius))),
@@ -135,7 +136,7 @@ def _largest_part(samples: Float[Array, "point span batch"]) -> Float[Array, " b
     By cubics where the parts of a span divide by three, else by parabolas.
     """
     if (len(samples) - 1) % 3:
-        return jnp.max(vertex_value(samples[:-2], samples[1:-1], samples[2:]), axis=(0, 1))
+        return largest(vertex_value(samples[:-2], samples[1:-1], samples[2:]), axis=(0, 1))
     four = [samples[:-1:3], samples[1::3], samples[2::3], samples[3::3]]
     powers = [combine(row, four) for row in _THIRDS_TO_POWERS]
     return highest_of_cubics([each.reshape(-1, each.shape[-1]) for each in powers])

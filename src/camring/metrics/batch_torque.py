@@ -15,6 +15,7 @@ from camring.numerics.batch_extremum import highest_of_cubics
 from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import element_powers
+from camring.numerics.selection import bounded, smaller, smallest
 from camring.physics.cycle import Cycle
 
 
@@ -38,11 +39,11 @@ def torque_span(
     place = jnp.where(place >= mesh.start[:1] + period, place - period, place)
     element = locate(mesh.start, place.reshape(-1, place.shape[-1])).reshape(place.shape)
     their_width = take(width, element)
-    fraction = jnp.clip((place - take(mesh.start, element)) / their_width, 0, 1)
+    fraction = bounded((place - take(mesh.start, element)) / their_width, 0, 1)
     element, their_width, fraction = computed_once((element, their_width, fraction))
 
     left = (1 - fraction) * their_width
-    length = computed_once(jnp.minimum(mesh.width, jnp.min(left, axis=0, initial=period)))
+    length = computed_once(smaller(mesh.width, smaller(smallest(left, axis=0), period)))
     share = length / width
     whole = _in_parts(list(powers), jnp.zeros_like(share), share)
     if phases > 1:

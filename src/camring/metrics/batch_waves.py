@@ -8,6 +8,7 @@ from jaxtyping import Array, Float, Int
 from camring.metrics.batch_spectra import of_all_pistons, piston_around
 from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
+from camring.numerics.selection import smallest
 from camring.physics.batch_cycle import BatchResolution
 from camring.physics.heat.batch_simulation import simulate_batch
 from camring.physics.heat.collocation import at_collocation_points
@@ -56,6 +57,6 @@ def simulate_shown(
         jnp.stack(means),
         jnp.stack(waves),
         cycle.verdict.code,
-        jnp.min(samples.piston.chamber_pressure, axis=(0, 1)),
-        jnp.min(samples.piston.force, axis=(0, 1)),
+        smallest(samples.piston.chamber_pressure, axis=(0, 1)),
+        smallest(samples.piston.force, axis=(0, 1)),
     )

@@ -12,6 +12,7 @@ from jaxtyping import Array, Float
 
 from camring.numerics.extremum import EXTREMUM_FRACTIONS
 from camring.numerics.quantity import Q
+from camring.numerics.selection import bounded, smaller
 from camring.physics.cycle import Cycle
 
 
@@ -41,8 +42,8 @@ def cavitation(
 
     def share_below(limit: Q[Float[Array, ""], "Pa"]) -> Q[Float[Array, ""], "1"]:
         one, other = pressure[:-1], pressure[1:]
-        low, rise = jnp.minimum(one, other), jnp.abs(other - one)
-        part = jnp.clip((limit - low) / jnp.where(rise > 0, rise, 1), 0, 1)
+        low, rise = smaller(one, other), jnp.abs(other - one)
+        part = bounded((limit - low) / jnp.where(rise > 0, rise, 1), 0, 1)
         below = jnp.where(rise > 0, part, limit > low)
         return jnp.sum(below * length, axis=(0, 1)) / jnp.sum(width, axis=0)
 

@@ -15,6 +15,7 @@ from jaxtyping import Array, Float
 
 from camring.metrics.spectrum import quadrature_samples
 from camring.numerics.quantity import Q
+from camring.numerics.selection import largest
 from camring.physics.cycle import Cycle
 from camring.physics.motor import Motor
 from camring.physics.piston_state import PistonState, sample_angles
@@ -75,7 +76,7 @@ def radial_load(cycle: Cycle) -> RadialLoad:
     by_order = parts(pressing, turning - 1)[: len(turning)]
     length = jnp.abs(_vector(cycle))
     return RadialLoad(
-        largest=jnp.max(length),
+        largest=largest(length),
         mean=jnp.mean(length),
         by_order=by_order,
         outwards=motor.pistons * samples.mean(piston.force),

@@ -29,6 +29,7 @@ from jaxtyping import Array, Float
 
 from camring.geometry.contour import undercut_factor
 from camring.numerics.quantity import Q
+from camring.numerics.selection import larger
 from camring.physics.motor import Motor
 from camring.physics.piston_state import PistonState
 
@@ -114,5 +115,5 @@ def rating_life(
     of_ring = found.ring / found.ring_length / ring ** (DISPERSION * LOAD_EXPONENT)
     of_roller = found.roller / found.ring_length / roller**LOAD_EXPONENT
     weakest = of_ring + motor.pistons * of_roller**DISPERSION
-    revolutions = _MILLION * jnp.maximum(weakest, _TINY) ** (-1 / DISPERSION)
+    revolutions = _MILLION * larger(weakest, _TINY) ** (-1 / DISPERSION)
     return revolutions * 2 * pi / jnp.abs(speed)

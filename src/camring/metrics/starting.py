@@ -18,6 +18,7 @@ from camring.geometry.extremes import extreme_radius
 from camring.metrics.batch_spectra import of_all_pistons
 from camring.metrics.displacement import rises_between_knots
 from camring.numerics.quantity import Q
+from camring.numerics.selection import largest, smallest
 from camring.physics.chamber import Chamber, chamber_at
 from camring.physics.contact import normal_force
 from camring.physics.cycle import reference_radius
@@ -52,7 +53,7 @@ class Starting(eqx.Module):
 
     def starting_torque(self, reverse: bool = False) -> Q[Float[Array, ""], "N.m"]:
         """The least at any of the angles: what the shaft gives wherever it stands."""
-        return jnp.min(self.torque(reverse))
+        return smallest(self.torque(reverse))
 
     def starting_efficiency(self, reverse: bool = False) -> Q[Float[Array, ""], "1"]:
         """Over the torque without any loss."""
@@ -123,7 +124,7 @@ def still_pressure(
 
     around = jnp.stack([point.supply_pressure, point.return_pressure, point.case_pressure])
     zeros = jnp.zeros_like(chamber.volume)
-    low, high = jnp.min(around) + zeros, jnp.max(around) + zeros
+    low, high = smallest(around) + zeros, largest(around) + zeros
 
     def halve(_: int, ends: tuple[Array, Array]) -> tuple[Array, Array]:
         low, high = ends

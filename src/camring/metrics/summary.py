@@ -22,6 +22,7 @@ from camring.metrics.torque_range import torque_range
 from camring.numerics.extremum import EXTREMUM_FRACTIONS, maximum, minimum, total_variation
 from camring.numerics.quantity import Q
 from camring.numerics.readable import written_fields
+from camring.numerics.selection import larger
 from camring.physics.cycle import Cycle
 from camring.physics.piston_state import sample_elements
 
@@ -238,8 +239,8 @@ def results(cycle: Cycle, found: Measured) -> Metrics:
         max_pressure=found.highest_pressure,
         supply_pressure_swing=found.supply_pressure_swing,
         return_pressure_swing=found.return_pressure_swing,
-        pressure_overshoot=jnp.maximum(found.highest_pressure - point.higher_pressure, 0),
-        pressure_undershoot=jnp.maximum(point.lower_pressure - found.lowest_pressure, 0),
+        pressure_overshoot=larger(found.highest_pressure - point.higher_pressure, 0),
+        pressure_undershoot=larger(point.lower_pressure - found.lowest_pressure, 0),
         air_release_margin=found.cavitation.air_release_margin,
         vapour_margin=found.cavitation.vapour_margin,
         share_below_air_release=found.cavitation.share_below_air_release,

@@ -5,6 +5,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q
+from camring.numerics.selection import largest, smallest
 from camring.physics.motor import Motor
 from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.operating_point import OperatingPoint
@@ -65,7 +66,7 @@ def port_timing(motor: Motor, fluid: AbstractFluid, point: OperatingPoint) -> Ti
         found = jnp.argmax(enough) * (pitch / _SAMPLES)
         return jnp.where(jnp.any(enough), found, jnp.inf)
 
-    stroke = jnp.max(radius) - jnp.min(radius)
+    stroke = largest(radius) - smallest(radius)
     return Timing(
         inner_dead_centre=inner,
         outer_dead_centre=outer,

@@ -14,6 +14,7 @@ from jaxtyping import Array, Float
 from camring.numerics.extremum import EXTREMUM_FRACTIONS, quartic_top, vertex_value
 from camring.numerics.mesh import folded
 from camring.numerics.quantity import Q
+from camring.numerics.selection import bounded
 from camring.physics.cycle import Cycle
 from camring.physics.piston_state import sample_located
 
@@ -43,7 +44,7 @@ def torque_range(cycle: Cycle) -> TorqueRange:
     piston = jnp.arange(phases)[:, None]
     entered = jnp.cumsum(own[order] == piston, axis=1)
     passed = jnp.sum(own < piston, axis=1, keepdims=True)
-    element = jnp.clip(passed + entered - 1, 0)
+    element = bounded(passed + entered - 1, 0)
 
     def torque_at(element: Array, within: Array) -> Array:
         """Of all pistons: elements (piston, place), places within the phase (..., 1, place)."""

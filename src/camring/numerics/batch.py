@@ -13,6 +13,8 @@ import numpy as np
 from jax import lax
 from jaxtyping import Array, Float, Int
 
+from camring.numerics.selection import bounded, smaller
+
 
 def take(
     rows: Float[Array, "row batch"], number: Int[Array, "*grid batch"]
@@ -35,7 +37,7 @@ def locate(
     step = 1 << (count - 1).bit_length() >> 1
     while step:
         probe = found + step
-        reached = take(ascending, jnp.minimum(probe, count - 1)) <= value
+        reached = take(ascending, smaller(probe, count - 1)) <= value
         found = jnp.where((probe < count) & reached, probe, found)
         step >>= 1
     return found
@@ -56,7 +58,7 @@ def reached(number: Int[Array, "one batch"], rows: int) -> Int[Array, "row batch
     Where it can be said at which row each of some thresholds is passed, this finds all
     rows' thresholds at once, without a search.
     """
-    within = jnp.clip(number, 0, rows).astype(jnp.int32)
+    within = bounded(number, 0, rows).astype(jnp.int32)
     ones = jnp.ones_like(within)
     counts = lax.scatter_add(
         jnp.zeros((rows + 1, number.shape[-1]), jnp.int32),
@@ -74,11 +76,11 @@ def interpolate(
     results: Float[Array, "row batch"],
 ) -> Float[Array, "wanted batch"]:
     """Piecewise linear interpolation on rows that may coincide; constant beyond the ends."""
-    before = jnp.minimum(locate(ascending, value), ascending.shape[0] - 2)
+    before = smaller(locate(ascending, value), ascending.shape[0] - 2)
     low, start = take(ascending, before), take(results, before)
     gap, rise = take(ascending, before + 1) - low, take(results, before + 1) - start
     share = jnp.where(gap > 0, (value - low) / jnp.where(gap > 0, gap, 1), 0)
-    return start + jnp.clip(share, 0, 1) * rise
+    return start + bounded(share, 0, 1) * rise
 
 
 def ascending_rows(

@@ -13,6 +13,7 @@ from jaxtyping import Array, Bool, Float, Int
 from camring.numerics.batch import take
 from camring.numerics.crossing import crossings
 from camring.numerics.mesh import Mesh
+from camring.numerics.selection import larger
 
 Rows = Float[Array, "element batch"]
 
@@ -56,7 +57,7 @@ def with_nodes_at_kinks(
         start = jnp.where(mine, place, start)
         state = jnp.where(mine | moved, level, state)
         fixed = fixed | mine | moved
-    width = jnp.maximum(jnp.concatenate([start[1:], end[0]]) - start, 0)
+    width = larger(jnp.concatenate([start[1:], end[0]]) - start, 0)
     return Mesh(start, width, mesh.is_first), state
 
 
@@ -72,16 +73,16 @@ def _last_before(
     found = jnp.where(found > mesh.start, found, -jnp.inf)
     here = take(found, element)
     here = jnp.where(here <= position, here, -jnp.inf)
-    return jnp.maximum(here, take(_latest(found), element))
+    return larger(here, take(_latest(found), element))
 
 
 def _latest(rows: Rows) -> Rows:
     """The largest of all rows before each."""
 
-    def larger(so_far: Array, row: Array) -> tuple[Array, Array]:
-        return jnp.maximum(so_far, row), so_far
+    def further(so_far: Array, row: Array) -> tuple[Array, Array]:
+        return larger(so_far, row), so_far
 
-    return jax.lax.scan(larger, jnp.full_like(rows[0], -jnp.inf), rows)[1]
+    return jax.lax.scan(further, jnp.full_like(rows[0], -jnp.inf), rows)[1]
 
 
 def _pushed(

@@ -5,17 +5,18 @@ from jax.lax import stop_gradient
 from jaxtyping import Array, Float
 
 from camring.numerics.radau import element_powers, horner
+from camring.numerics.selection import larger, largest
 
 
 def highest_of_cubics(powers: list[Float[Array, "element batch"]]) -> Float[Array, " batch"]:
     """Largest value of all cubics from 0 to 1, by their coefficients, lowest power first."""
     end = powers[0] + powers[1] + powers[2] + powers[3]
-    return _highest(powers, jnp.maximum(powers[0], end))
+    return _highest(powers, larger(powers[0], end))
 
 
-def largest(values: Float[Array, "4 element batch"]) -> Float[Array, " batch"]:
+def highest_of_samples(values: Float[Array, "4 element batch"]) -> Float[Array, " batch"]:
     """Largest value of the cubics through an element's start and its three points."""
-    return _highest(list(element_powers(values[0], values[1:])), jnp.max(values, axis=0))
+    return _highest(list(element_powers(values[0], values[1:])), largest(values, axis=0))
 
 
 def _highest(powers: list[Array], best: Float[Array, "element batch"]) -> Float[Array, " batch"]:
@@ -32,5 +33,5 @@ def _highest(powers: list[Array], best: Float[Array, "element batch"]) -> Float[
     for place in (stop_gradient(one), stop_gradient(other)):
         inside = turns & (place > 0) & (place < 1)
         top = horner(powers, place)
-        best = jnp.where(inside, jnp.maximum(best, top), best)
-    return jnp.max(best, axis=0)
+        best = jnp.where(inside, larger(best, top), best)
+    return largest(best, axis=0)

@@ -15,6 +15,7 @@ from jaxtyping import Array, Float, Int
 
 from camring.numerics.batch import interpolate, reached, running_total, take
 from camring.numerics.mesh import LAYER_ELEMENTS, Mesh, graded_fractions
+from camring.numerics.selection import bounded, larger, smaller
 
 Rows = Float[Array, "breakpoint batch"]
 
@@ -113,16 +114,16 @@ def equidistribute_batch(
     # Behind the layer the first ordinary element gives up the layer's length.
     one_share = interpolate(mass_at[:-1] + share, mass, node)
     end = _ends(breakpoints, period)
-    first_width = jnp.where(ordinary == 1, end, jnp.clip(one_share, breakpoints, end)) - breakpoints
-    nearest = breakpoints + jnp.minimum(3 * layer, first_width / 8)
-    nearer = breakpoints + jnp.minimum(12 * layer, first_width / 2)
+    first_width = jnp.where(ordinary == 1, end, bounded(one_share, breakpoints, end)) - breakpoints
+    nearest = breakpoints + smaller(3 * layer, first_width / 8)
+    nearer = breakpoints + smaller(12 * layer, first_width / 2)
     number, first = first, first[:-1]
 
     # Each node of the given mesh lies behind so many new ones: those of the segments
     # before, of the layer, and the ordinary ones that have had their share.
     position, at = given.start, segments.spread
     shares = (mass[:-1] - at(mass_at[:-1])) / at(jnp.where(share > 0, share, 1))
-    past = jnp.clip(jnp.ceil(shares) - 1, 0, at(ordinary) - 1)
+    past = bounded(jnp.ceil(shares) - 1, 0, at(ordinary) - 1)
     past = past + (position > at(breakpoints))
     past = past + at(sharp) * ((position > at(nearest)) + 1.0 * (position > at(nearer)))
     within = reached(at(first) + past, elements) - 1
@@ -140,7 +141,7 @@ def equidistribute_batch(
         left_over = jnp.arange(elements, dtype=float)[:, None] >= used
         start = jnp.where(left_over, breakpoints[:1] + period, start)
     following = jnp.concatenate([start[1:], breakpoints[:1] + period])
-    mesh = Mesh(start, jnp.maximum(following - start, 0), is_first)
+    mesh = Mesh(start, larger(following - start, 0), is_first)
     return Laid(mesh, within, CountedSegments(number.astype(jnp.int32), segment))
 
 

@@ -39,6 +39,7 @@ from camring.numerics.newton import damped_newton
 from camring.numerics.once import computed_once
 from camring.numerics.periodic import Orbit, collocation_residual, eliminate, extent
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, element_powers, horner
+from camring.numerics.selection import larger, largest, smaller, smallest
 
 Rows = Float[Array, "element batch"]
 Step = Callable[[Equation, Forcing, Mesh, list[Rows]], tuple[Rows, list[Rows]]]
@@ -248,10 +249,10 @@ def _newton(
 
 def _share_of_range(step: list[Rows], stages: list[Rows]) -> Float[Array, " batch"]:
     """The largest part of a step, over the range of the stages."""
-    largest = reduce(jnp.maximum, [jnp.max(jnp.abs(each), axis=0) for each in step])
-    highest = reduce(jnp.maximum, [jnp.max(each, axis=0) for each in stages])
-    lowest = reduce(jnp.minimum, [jnp.min(each, axis=0) for each in stages])
-    return largest / (highest - lowest + 1e-300)
+    most = reduce(larger, [largest(jnp.abs(each), axis=0) for each in step])
+    highest = reduce(larger, [largest(each, axis=0) for each in stages])
+    lowest = reduce(smaller, [smallest(each, axis=0) for each in stages])
+    return most / (highest - lowest + 1e-300)
 
 
 def _density(
@@ -297,4 +298,4 @@ def _layer_width(
     behind = Mesh(segments.first(mesh.start), segments.first(mesh.width), mesh.is_first)
     at_start = jax.tree.map(lambda leaf: leaf[0], equation.forcing(behind, jnp.zeros(1)))
     _, slope = equation.rate_and_slope(at_start, segments.first(node_state))
-    return 1 / jnp.maximum(jnp.abs(slope), 1 / period)
+    return 1 / larger(jnp.abs(slope), 1 / period)

@@ -10,6 +10,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.mesh import Mesh
+from camring.numerics.selection import bounded, larger
 
 BISECTIONS, NEWTON_STEPS = 3, 4
 
@@ -34,7 +35,7 @@ def crossings(
     for _ in range(NEWTON_STEPS):
         slope = (3 * third * fraction + 2 * second) * fraction + first
         step = height(fraction) / jnp.where(slope == 0, 1, slope)
-        fraction = jnp.clip(fraction - step, low, high)
+        fraction = bounded(fraction - step, low, high)
     return jnp.where(start * end < 0, mesh.start + fraction * mesh.width, jnp.nan)
 
 
@@ -54,5 +55,5 @@ def with_nodes_at(mesh: Mesh, positions: Float[Array, " position"]) -> Mesh:
     moved = real & (behind_free | ahead_free)
     start = mesh.start.at[jnp.where(moved, node, count)].set(positions, mode="drop")
     end = (mesh.start[-1] + mesh.width[-1])[None]
-    width = jnp.maximum(jnp.diff(jnp.concatenate([start, end])), 0)
+    width = larger(jnp.diff(jnp.concatenate([start, end])), 0)
     return Mesh(start, width, mesh.is_first)

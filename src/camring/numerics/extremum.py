@@ -11,6 +11,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from camring.numerics.selection import bounded, larger, largest, smaller
+
 EXTREMUM_FRACTIONS = np.linspace(0, 1, 5)
 """Where `maximum` wants its elements sampled: ends, quarters and middle."""
 
@@ -25,7 +27,7 @@ def maximum(samples: Float[Array, "5 element"]) -> Float[Array, ""]:
     alone.
     """
     tops = vertex_value(samples[:-2], samples[1:-1], samples[2:])
-    element = jnp.argmax(jnp.max(jax.lax.stop_gradient(tops), axis=0))
+    element = jnp.argmax(largest(jax.lax.stop_gradient(tops), axis=0))
     return quartic_top(samples[:, element])
 
 
@@ -45,13 +47,13 @@ def quartic_top(samples: Float[Array, " 5"]) -> Float[Array, ""]:
     powers = jnp.asarray(_TO_POWERS) @ fixed
     rise, bend = powers[1:] * np.arange(1, 5), powers[2:] * (np.arange(2, 5) * np.arange(1, 4))
     place = best / 4
-    low, high = jnp.maximum(place - 0.25, 0), jnp.minimum(place + 0.25, 1)
+    low, high = larger(place - 0.25, 0), smaller(place + 0.25, 1)
     at = place
     for _ in range(_NEWTON_STEPS):
         slope = ((rise[3] * at + rise[2]) * at + rise[1]) * at + rise[0]
         curvature = (bend[2] * at + bend[1]) * at + bend[0]
         step = jnp.where(curvature < 0, slope / jnp.where(curvature < 0, curvature, 1), 0)
-        at = jnp.clip(at - step, low, high)
+        at = bounded(at - step, low, high)
     weights = at ** np.arange(5) @ jnp.asarray(_TO_POWERS)
     refined, sampled = weights @ samples, samples[best]
     return jnp.where(refined > sampled, refined, sampled)
@@ -69,7 +71,7 @@ def vertex_value(
     offset = -slope / jnp.where(bend < 0, bend, -1.0)
     inside = (bend < 0) & (jnp.abs(offset) <= 1)
     top = here - slope**2 / (2 * jnp.where(bend < 0, bend, -1.0))
-    return jnp.where(inside, top, jnp.maximum(jnp.maximum(before, after), here))
+    return jnp.where(inside, top, larger(larger(before, after), here))
 
 
 def total_variation(
@@ -114,6 +116,6 @@ def rise_to_turn(
     one = start / jnp.where(turns, half, 1.0)
     other = half / jnp.where(turns & (square != 0), square, 1.0)
     # A root at an end, one rounding outside, would else be taken for the other, far away.
-    turn = jnp.clip(jnp.where((one > 0) & (one < 1), one, other), 0.0, 1.0)
+    turn = bounded(jnp.where((one > 0) & (one < 1), one, other), 0.0, 1.0)
     there = ((square / 3 * turn + linear / 2) * turn + start) * turn
     return jnp.where(turns, there, rise)

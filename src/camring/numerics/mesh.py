@@ -12,6 +12,7 @@ import numpy as np
 from jax.lax import stop_gradient
 from jaxtyping import Array, Bool, Float, Int
 
+from camring.numerics.selection import bounded, larger, smaller
 from camring.numerics.spline import floor_past_rounding
 
 LAYER_ELEMENTS = 2
@@ -44,7 +45,7 @@ class Mesh(NamedTuple):
     def locate(self, position: Float[Array, "*grid"]) -> tuple[Array, Float[Array, "*grid"]]:
         """Element number and fraction of positions within the period."""
         element = jnp.searchsorted(self.start, position, side="right") - 1
-        element = jnp.clip(element, 0)
+        element = bounded(element, 0)
         width = self.width[element]
         offset = position - self.start[element]
         return element, jnp.where(width > 0, offset / jnp.where(width > 0, width, 1), 1)
@@ -75,8 +76,8 @@ def folded(
     Positions ascend; the first is where the period begins.
     """
     from_first = position - position[0]
-    own = jnp.clip(floor_past_rounding(stop_gradient(from_first) / part), 0, parts - 1)
-    return own, jnp.maximum(from_first - own * part, 0)
+    own = bounded(floor_past_rounding(stop_gradient(from_first) / part), 0, parts - 1)
+    return own, larger(from_first - own * part, 0)
 
 
 def graded_fractions(count: int) -> np.ndarray:
@@ -129,20 +130,20 @@ def equidistribute(
     segment = jnp.searchsorted(first[:-1], element, side="right") - 1
     share_mass = (mass_at[1:] - mass_at[:-1]) / ordinary
     past_thin = element - (first[:-1] + thin)[segment]
-    target = mass_at[segment] + jnp.maximum(past_thin, 0) * share_mass[segment]
+    target = mass_at[segment] + larger(past_thin, 0) * share_mass[segment]
     inner = _interpolate_sorted(target, mass, node)
     # Behind the layer the first ordinary element gives up the layer's length.
     one_share = _interpolate_sorted(mass_at[:-1] + share_mass, mass, node)
-    first_width = jnp.where(ordinary == 1, end, jnp.clip(one_share, begin, end)) - begin
-    nearest = (begin + jnp.minimum(3 * layer, first_width / 8))[segment]
-    nearer = (begin + jnp.minimum(12 * layer, first_width / 2))[segment]
+    first_width = jnp.where(ordinary == 1, end, bounded(one_share, begin, end)) - begin
+    nearest = (begin + smaller(3 * layer, first_width / 8))[segment]
+    nearer = (begin + smaller(12 * layer, first_width / 2))[segment]
     behind, ahead = begin[segment], end[segment]
-    start = jnp.clip(inner, behind, ahead)
+    start = bounded(inner, behind, ahead)
     start = jnp.where(past_thin == -1, nearest, jnp.where(past_thin == 0, nearer, start))
     is_first = element == first[:-1][segment]
     start = jnp.where(is_first, behind, start)
     following = jnp.concatenate([start[1:], begin[:1] + period])
-    return Mesh(start, jnp.maximum(following - start, 0), is_first)
+    return Mesh(start, larger(following - start, 0), is_first)
 
 
 def follow_breakpoints(mesh: Mesh, breakpoints: Float[Array, " breakpoint"], period: float) -> Mesh:
@@ -168,20 +169,20 @@ def fourth_derivative_density(
     The fourth derivative is the change of third derivative from element to
     element, not counted across breakpoints, where it jumps of right.
     """
-    width = jnp.maximum(mesh.width, 1e-14 * period)
+    width = larger(mesh.width, 1e-14 * period)
     third = 6 * third_coefficient / width**3 / extent
     # What a thin element's third derivative owes to rounding must not count in a wide neighbour.
     noise = 6 * ROUNDING / width**3
     jump = jnp.abs(third - jnp.roll(third, 1, axis=0)) - noise - jnp.roll(noise, 1, axis=0)
-    change = jnp.maximum(jump, 0) / ((width + jnp.roll(width, 1, axis=0)) / 2)
+    change = larger(jump, 0) / ((width + jnp.roll(width, 1, axis=0)) / 2)
     change = jnp.where(mesh.is_first, 0.0, change)
-    density = jnp.sqrt(jnp.sqrt(jnp.maximum(change, jnp.roll(change, -1, axis=0))))
+    density = jnp.sqrt(jnp.sqrt(larger(change, jnp.roll(change, -1, axis=0))))
     behind, ahead = (
-        jnp.roll(density, k, axis=0) * jnp.minimum(1, jnp.roll(width, k, axis=0) / width)
+        jnp.roll(density, k, axis=0) * smaller(1, jnp.roll(width, k, axis=0) / width)
         for k in (1, -1)
     )
-    spread = jnp.maximum(behind, ahead) / 2
-    return _level(jnp.minimum(jnp.maximum(density, spread), 1e7 / period), mesh, period)
+    spread = larger(behind, ahead) / 2
+    return _level(smaller(larger(density, spread), 1e7 / period), mesh, period)
 
 
 def _level(
@@ -196,8 +197,8 @@ def _interpolate_sorted(
 ) -> Float[Array, " wanted"]:
     """Piecewise linear interpolation on an ascending grid that may hold equal values."""
     after = jnp.searchsorted(grid, wanted, side="right")
-    right = jnp.clip(after, 1, grid.shape[0] - 1)
+    right = bounded(after, 1, grid.shape[0] - 1)
     left = right - 1
     span = grid[right] - grid[left]
     share = jnp.where(span > 0, (wanted - grid[left]) / jnp.where(span > 0, span, 1), 0)
-    return values[left] + jnp.clip(share, 0, 1) * (values[right] - values[left])
+    return values[left] + bounded(share, 0, 1) * (values[right] - values[left])

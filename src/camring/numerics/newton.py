@@ -7,6 +7,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
+from camring.numerics.selection import smaller
+
 Stages = TypeVar("Stages")
 
 
@@ -67,4 +69,4 @@ def damped_newton(
 def _part(step: Array, before: Array, part: Array) -> Array:
     """Of its step that each stage takes, after the step before."""
     leaps = (step * before < 0) & (2 * jnp.abs(step) > jnp.abs(before))
-    return jnp.where(leaps, part / 2, jnp.minimum(2 * part, 1))
+    return jnp.where(leaps, part / 2, smaller(2 * part, 1))

@@ -57,6 +57,7 @@ from camring.numerics.radau import (
     horner,
     solve_stages,
 )
+from camring.numerics.selection import larger, largest, smallest
 
 FORGOTTEN = 1e-100
 """A share of a disturbance that counts as none."""
@@ -196,14 +197,14 @@ def settle(
 
 def extent(states: Float[Array, "point element *batch"]) -> Float[Array, "*batch"]:
     """Range of the states, which errors are measured against; never nil."""
-    return jnp.max(states, axis=(0, 1)) - jnp.min(states, axis=(0, 1)) + 1e-300
+    return largest(states, axis=(0, 1)) - smallest(states, axis=(0, 1)) + 1e-300
 
 
 def share_of_range(
     step: Float[Array, "point element *batch"], states: Float[Array, "point element *batch"]
 ) -> Float[Array, "*batch"]:
     """The largest part of a step, over the range of the states."""
-    return jnp.max(jnp.abs(step), axis=(0, 1)) / extent(states)
+    return largest(jnp.abs(step), axis=(0, 1)) / extent(states)
 
 
 def _layer_width(
@@ -218,7 +219,7 @@ def _layer_width(
     behind = Mesh(*(leaf[first] for leaf in mesh))
     at_start = jax.tree.map(lambda leaf: leaf[0], equation.forcing(behind, jnp.zeros(1)))
     _, slope = equation.rate_and_slope(at_start, node_state[first])
-    return 1 / jnp.maximum(jnp.abs(slope), 1 / period)
+    return 1 / larger(jnp.abs(slope), 1 / period)
 
 
 def newton_step(
@@ -301,4 +302,4 @@ def collocation_residual(
         for i, row in enumerate(STAGE_INTEGRALS)
     ]
     closure = jnp.abs(jnp.roll(stages[2], 1, axis=0) - node_state)
-    return jnp.max(jnp.stack([*errors, closure]), axis=(0, 1)) / extent(stages)
+    return largest(jnp.stack([*errors, closure]), axis=(0, 1)) / extent(stages)

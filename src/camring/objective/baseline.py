@@ -17,6 +17,7 @@ from camring.geometry.extremes import extreme_radius
 from camring.geometry.valve_plate import ValvePlate
 from camring.metrics.displacement import driving
 from camring.numerics.quantity import Q
+from camring.numerics.selection import bounded, larger
 from camring.objective.objective import Goal
 from camring.objective.terms import TERM_NAMES, weighted_sum
 from camring.physics.cycle import reference_radius
@@ -42,8 +43,8 @@ def commutation_wave(
 
     from_supply = beyond(plate.supply.centre, plate.supply.width)
     from_return = beyond(plate.return_.centre, plate.return_.width)
-    gap = jnp.maximum(jnp.abs(from_supply + from_return), NARROWEST_SWITCH * plate.pitch)
-    return jnp.clip(0.5 + (from_return - from_supply) / (2 * gap), 0, 1)
+    gap = larger(jnp.abs(from_supply + from_return), NARROWEST_SWITCH * plate.pitch)
+    return bounded(0.5 + (from_return - from_supply) / (2 * gap), 0, 1)
 
 
 def approximate(system: System, goal: Goal) -> Float[Array, ""]:

@@ -14,6 +14,7 @@ from jax.tree_util import register_dataclass
 from jaxtyping import Array, Float
 
 from camring.metrics.summary import Metrics
+from camring.numerics.selection import larger, largest
 from camring.physics.system import System
 
 UPPER_LIMITS = {
@@ -107,7 +108,7 @@ def violations(
         for point, results in zip(system.operating_points, metrics, strict=True)
     ]
     return {
-        name: jnp.max(jnp.stack([found[name] for found in each]), axis=0)
+        name: largest(jnp.stack([found[name] for found in each]), axis=0)
         for name in constraints.names()
     }
 
@@ -169,4 +170,4 @@ def _size(limit: Any, otherwise: Any) -> Any:
 
 def penalty(found: dict[str, Float[Array, "*batch"]], factor: float) -> Float[Array, "*batch"]:
     """`lambda * sum max(0, g)^2`."""
-    return factor * jnp.sum(jnp.maximum(jnp.stack(list(found.values())), 0) ** 2, axis=0)
+    return factor * jnp.sum(larger(jnp.stack(list(found.values())), 0) ** 2, axis=0)

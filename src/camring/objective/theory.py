@@ -18,6 +18,7 @@ from scipy.optimize import lsq_linear
 from camring.geometry.cam import AbstractCam
 from camring.geometry.contour import pressure_angle, undercut_factor
 from camring.geometry.profiles import zero_ripple_cams
+from camring.numerics.selection import largest, smallest
 from camring.objective.cam_modes import control_values, unit_point_for
 from camring.objective.design_space import DesignSpace
 from camring.physics.contact import hertz_stress, normal_force
@@ -114,15 +115,15 @@ def _cam_facts(system: System, cam: AbstractCam) -> tuple[Array, Array, Array]:
     motor = system.motor
     angles = cam.period * jnp.arange(16 * cam.control_count) / (16 * cam.control_count)
     radius = cam.pitch_radius(angles)
-    pressed = jnp.max(
+    pressed = largest(
         jnp.stack([p.supply_pressure - p.case_pressure for p in system.operating_points])
     )
     force = jnp.where(radius.first >= 0, motor.piston.area * pressed, 0.0)
     stress = hertz_stress(normal_force(force, radius), radius, motor.roller, motor.ring_material)
     return (
-        jnp.min(undercut_factor(radius, motor.roller.radius)),
-        jnp.max(jnp.abs(pressure_angle(radius))),
-        jnp.max(stress),
+        smallest(undercut_factor(radius, motor.roller.radius)),
+        largest(jnp.abs(pressure_angle(radius))),
+        largest(stress),
     )
 
 

@@ -9,6 +9,7 @@ from camring.geometry.contour import undercut_factor
 from camring.geometry.material import Material, contact_modulus
 from camring.geometry.piston import Roller
 from camring.numerics.quantity import Q
+from camring.numerics.selection import larger
 from camring.numerics.spline import Jet
 
 
@@ -34,7 +35,7 @@ def hertz_stress(
     """
     factor = undercut_factor(radius, roller.radius)
     relative_radius = roller.radius * factor
-    pressing = jnp.maximum(contact_force, 0)
+    pressing = larger(contact_force, 0)
     squared = (
         pressing
         * contact_modulus(roller.material, ring_material)

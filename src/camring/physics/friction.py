@@ -10,6 +10,7 @@ from jaxtyping import Array, Float
 from camring.geometry.contour import undercut_factor
 from camring.geometry.piston import Piston, Roller
 from camring.numerics.quantity import Q, real
+from camring.numerics.selection import larger
 from camring.numerics.spline import Jet
 from camring.physics.oil.fluid import AbstractFluid
 
@@ -101,5 +102,5 @@ class ViscousFriction(AbstractFriction):
     def loss_torque(
         self, contacts: SlidingContacts, piston: Piston, fluid: AbstractFluid
     ) -> Q[Float[Array, "*grid"], "N.m"]:
-        rolling = self.roller * jnp.maximum(contacts.normal_force, 0) * contacts.ring_length
+        rolling = self.roller * larger(contacts.normal_force, 0) * contacts.ring_length
         return rolling + self.side * contacts.side_force * jnp.abs(contacts.radius.first)

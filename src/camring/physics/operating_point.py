@@ -1,11 +1,11 @@
 """What is asked of the motor: speed and pressures."""
 
 import equinox as eqx
-import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q, real
 from camring.numerics.readable import readable
+from camring.numerics.selection import larger, smaller
 
 
 class OperatingPoint(eqx.Module):
@@ -39,11 +39,11 @@ class OperatingPoint(eqx.Module):
     @property
     def higher_pressure(self) -> Q[Float[Array, ""], "Pa"]:
         """The supply's, or the return's where the machine brakes."""
-        return jnp.maximum(self.supply_pressure, self.return_pressure)
+        return larger(self.supply_pressure, self.return_pressure)
 
     @property
     def lower_pressure(self) -> Q[Float[Array, ""], "Pa"]:
         """The return's, or the supply's where the machine brakes."""
-        return jnp.minimum(self.supply_pressure, self.return_pressure)
+        return smaller(self.supply_pressure, self.return_pressure)
 
     __repr__ = readable

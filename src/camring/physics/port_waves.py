@@ -6,6 +6,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q
+from camring.numerics.selection import larger
 from camring.physics.cycle import Cycle
 from camring.physics.manifold.coupling import line_flow
 from camring.physics.manifold.sides import RETURN, SUPPLY, Side
@@ -50,7 +51,7 @@ def of_one_piston(cycle: Cycle, piston: PistonState) -> PortWaves:
         port, pressure = side.set_pressure(point), getattr(piston, side.pressure)
         return line_flow(manifold, fluid, port, pressure) / motor.pistons
 
-    reference = jnp.maximum(point.supply_pressure, point.return_pressure)
+    reference = larger(point.supply_pressure, point.return_pressure)
     per_amount = 1 / fluid.content(reference)
     return PortWaves(
         piston.torque,

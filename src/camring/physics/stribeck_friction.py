@@ -6,6 +6,7 @@ from jaxtyping import Array, Float
 
 from camring.geometry.piston import Piston
 from camring.numerics.quantity import Q, real
+from camring.numerics.selection import larger
 from camring.physics.friction import AbstractFriction, SlidingContacts
 from camring.physics.oil.fluid import AbstractFluid
 
@@ -50,7 +51,7 @@ class StribeckFriction(AbstractFriction):
             self.roller, self.roller_static, jnp.abs(contacts.roller_speed) / self.roller_stribeck
         )
         side = _at_speed(self.side, self.side_static, contacts.piston_speed / self.side_stribeck)
-        rolling = roller * jnp.maximum(contacts.normal_force, 0) * contacts.ring_length
+        rolling = roller * larger(contacts.normal_force, 0) * contacts.ring_length
         return rolling + side * contacts.side_force * jnp.abs(contacts.radius.first)
 
 

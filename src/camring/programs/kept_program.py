@@ -131,7 +131,8 @@ class KeptProgram(Generic[Arguments, Result]):
                 return None
             if key not in self._programs:
                 try:
-                    name = program_name(self._function, given, self._effort())
+                    options = _xla_flags(), self._effort()
+                    name = program_name(self._function, given, options)
                     path = folder / f"{self._function.__name__}-{name}{SUFFIX}"
                 except Indescribable:
                     self._others.add(key)
@@ -147,8 +148,7 @@ class KeptProgram(Generic[Arguments, Result]):
         """Options for the compiler, but for those that `XLA_FLAGS` name: a user's own go first."""
         sparing = SPARING if jax.default_backend() == "cpu" else {}
         chosen = sparing if self._options is None else self._options
-        flags = os.environ.get("XLA_FLAGS", "")
-        return {name: value for name, value in chosen.items() if f"--{name}=" not in flags}
+        return {name: value for name, value in chosen.items() if f"--{name}=" not in _xla_flags()}
 
     def _compiled(self, path: Path, given: Any, arrays: list[Any]) -> Program:
         function, result = between_arrays(self._function, given)
@@ -158,6 +158,10 @@ class KeptProgram(Generic[Arguments, Result]):
         with contextlib.suppress(Exception):  # what cannot be kept is compiled once more
             keep(path, (*serialize(compiled), result.tree))
         return Program(compiled, result.tree)
+
+
+def _xla_flags() -> str:
+    return os.environ.get("XLA_FLAGS", "")
 
 
 def completion(function: Callable[Arguments, Any]) -> Callable[Arguments, Any]:
@@ -267,11 +271,10 @@ def _connect_lapack() -> None:
 
 @lru_cache(maxsize=1)
 def made_with() -> str:
-    """Everything besides its function and its arguments that a program depends on."""
+    """Everything besides function, arguments and compiler's options that a program depends on."""
     versions = (sys.version, jax.__version__, jax.lib.__version__, eqx.__version__, np.__version__)
     device = jax.devices()[0]
     settings = (
-        os.environ.get("XLA_FLAGS"),
         _setting("jax_enable_x64"),
         _setting("jax_default_matmul_precision"),
         (device.platform, device.device_kind, jax.device_count()),

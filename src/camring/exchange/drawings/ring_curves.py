@@ -10,7 +10,7 @@ import numpy as np
 
 from camring.exchange.drawings.ring import Ring
 from camring.files.errors import InputError, quote
-from camring.numerics.closed_chain import ChainError, ClosedChain, fit_chain
+from camring.geometry.closed_chain import ChainError, ClosedChain, fit_chain
 from camring.numerics.closed_spline import ClosedSpline
 
 __all__ = ["DxfKind", "DxfStyle", "RingCurves", "micrometres", "ring_curves"]

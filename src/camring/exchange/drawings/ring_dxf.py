@@ -14,7 +14,7 @@ from camring.exchange.drawings.dxf_drawing import (
 )
 from camring.exchange.drawings.ring import Ring
 from camring.exchange.drawings.ring_curves import RingCurves, micrometres
-from camring.numerics.closed_chain import ClosedChain
+from camring.geometry.closed_chain import ClosedChain
 from camring.numerics.closed_spline import ClosedSpline
 
 __all__ = ["ring_dxf"]

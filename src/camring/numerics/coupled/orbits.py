@@ -47,6 +47,7 @@ from camring.numerics.mesh import (
 from camring.numerics.newton import damped_newton
 from camring.numerics.periodic import Orbit, extent
 from camring.numerics.radau import STAGES
+from camring.numerics.selection import larger, largest
 
 TOLERANCE = 1e-9  # of Newton's step against the range of the states; one more step follows
 ROUGH_TOLERANCE = 1e-3  # on the mesh that only serves to lay the next one
@@ -66,7 +67,7 @@ def fold(mesh: Mesh, period: float, links: int) -> Mesh:
     _, within = folded(mesh.start, part, links)
     order = jnp.argsort(stop_gradient(within))
     start = within[order]
-    width = jnp.maximum(jnp.concatenate([start[1:], jnp.full(1, part)]) - start, 0)
+    width = larger(jnp.concatenate([start[1:], jnp.full(1, part)]) - start, 0)
     shifts = mesh.start[0] + part * jnp.arange(links)
     return Mesh(
         (shifts[:, None] + start).reshape(-1),
@@ -172,7 +173,7 @@ def _newton(
         return coupled_step(equation, at_stages, width, current)[1]
 
     def share(step: Array, reached: Array) -> Array:
-        return jnp.max(jnp.abs(step)) / stage_extent(reached, links)
+        return largest(jnp.abs(step)) / stage_extent(reached, links)
 
     return damped_newton(improved, share, stages, tolerance, ITERATIONS)
 
@@ -221,7 +222,7 @@ def _laid_anew(
     densities = [_density(period, own, whole)] + [
         _density(period, each, jnp.sqrt(whole * extent(each.stage_state))) for each in shared
     ]
-    density = reduce(jnp.maximum, densities)
+    density = reduce(larger, densities)
     begin, end = segment_ends(breakpoints.position, period)
     forcing = equation.forcing_law(equation.parameters, begin, end - begin, jnp.zeros(1))
     state = own.at_position(begin[None])
@@ -231,7 +232,7 @@ def _laid_anew(
         return equation.rate(equation.parameters, forcing, state, common)
 
     _, slope = jax.jvp(rate, (state,), (jnp.ones_like(state),))
-    layer = 1 / jnp.maximum(jnp.abs(slope[0]), 1 / period)
+    layer = 1 / larger(jnp.abs(slope[0]), 1 / period)
     laid = equidistribute(own.mesh, density, breakpoints, layer, period, elements)
     for level in equation.kinks:
         laid = with_nodes_at(laid, crossings(own.mesh, powers, level))

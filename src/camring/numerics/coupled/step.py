@@ -23,6 +23,7 @@ from camring.numerics.mesh import Mesh
 from camring.numerics.once import computed_once
 from camring.numerics.periodic import extent
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, combine, solve_stages
+from camring.numerics.selection import larger, largest
 
 
 class CoupledEquation(eqx.Module):
@@ -281,6 +282,6 @@ def coupled_residual(
     inner = jnp.abs(stages[2, :, :-1] - nodes[:, 1:])
     ends, begins = stages[2, :, -1], nodes[:, 0]
     following = jnp.concatenate([jnp.roll(begins[:links], -1), begins[links:]])
-    largest = jnp.max(jnp.stack(errors))
-    missed = jnp.maximum(jnp.max(inner), jnp.max(jnp.abs(ends - following)))
-    return jnp.maximum(largest, missed) / stage_extent(stages, links)
+    worst = largest(jnp.stack(errors))
+    missed = larger(largest(inner), largest(jnp.abs(ends - following)))
+    return larger(worst, missed) / stage_extent(stages, links)

@@ -18,6 +18,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q
+from camring.numerics.selection import larger
 from camring.numerics.verdict import Fault
 from camring.physics.cycle import Cycle
 from camring.physics.motor import Motor
@@ -74,7 +75,7 @@ def balanced_rise(cycle: Cycle, flows: HeatFlows) -> Q[Float[Array, "*batch"], "
     assert thermal is not None
     assert line is not None
     from_outside = thermal.heat_transfer * (thermal.ambient_temperature - line.temperature)
-    carried = thermal.specific_heat * jnp.maximum(flows.drain, 0) + thermal.heat_transfer
+    carried = thermal.specific_heat * larger(flows.drain, 0) + thermal.heat_transfer
     return (flows.heat + from_outside) / carried
 
 

@@ -27,6 +27,7 @@ from camring.numerics.coupled.step import CoupledEquation
 from camring.numerics.mesh import Breakpoints, ElementCount
 from camring.numerics.periodic import Orbit
 from camring.numerics.quantity import Q
+from camring.numerics.selection import smaller
 from camring.physics.chamber import Chamber, chamber_alone
 from camring.physics.manifold.manifold import Manifold
 from camring.physics.manifold.sides import SIDES, SUPPLY, at_windows, sides_of
@@ -63,7 +64,7 @@ def expected_pressures(motor: Motor, point: OperatingPoint) -> list[Q[Float[Arra
         assert manifold is not None
         # A brake's manifold goes away from the other port: what bounds it is a pressure of zero.
         most = jnp.where(point.pressure_drop > 0, point.pressure_drop, port)
-        lost = jnp.minimum(drawn / manifold.line_conductance, FARTHEST * most)
+        lost = smaller(drawn / manifold.line_conductance, FARTHEST * most)
         found.append(port - lost if side is SUPPLY else port + lost)
     return found
 

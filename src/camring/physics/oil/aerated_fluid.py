@@ -13,6 +13,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q, real
+from camring.numerics.selection import bounded, smaller
 from camring.numerics.smooth import exponential_mean, logarithmic_mean
 from camring.physics.oil.fluid import AbstractOil, OilAt, Pressure
 
@@ -66,7 +67,7 @@ class AeratedFluid(AbstractOil):
     ) -> tuple[Q[Float[Array, "*grid"], "1"], Q[Float[Array, "*grid"], "1/Pa"]]:
         """Share of the air that is free, and its derivative by pressure."""
         span = self.dissolution_pressure - self.atmospheric_pressure
-        x = jnp.clip((pressure - self.atmospheric_pressure) / span, 0, 1)
+        x = bounded((pressure - self.atmospheric_pressure) / span, 0, 1)
         return 1 - x**2 * (3 - 2 * x), -6 * x * (1 - x) / span
 
     def _gas(self, pressure: Pressure) -> Q[Float[Array, "*grid"], "1"]:
@@ -121,11 +122,11 @@ class AeratedFluid(AbstractOil):
 
         power = 1 - 1 / self.polytropic_index
         held = jnp.where(self.air_fraction > 0, pressure, p0)
-        u = jnp.log(jnp.minimum(held, p0) / p0)
+        u = jnp.log(smaller(held, p0) / p0)
         below = p0 * u * exponential_mean(power * u)
 
         # Between p0 and pc the free share is a cubic in q = P/p0.
-        top = jnp.log(jnp.clip(held, p0, self.dissolution_pressure) / p0)
+        top = jnp.log(bounded(held, p0, self.dissolution_pressure) / p0)
         span = self.dissolution_pressure / p0 - 1
         square, cube = 3 / span**2, 2 / span**3
         coefficients = (2 * square + 3 * cube, -square - 3 * cube, cube)
@@ -164,6 +165,6 @@ class AeratedFluid(AbstractOil):
         air = 4 * self.air_ratio * self.atmospheric_pressure / self.bulk_modulus
         has_air = self.air_fraction > 0
         root = jnp.sqrt(state**2 + jnp.where(has_air, air, 1))
-        pulled = jnp.minimum(state, 0)
+        pulled = smaller(state, 0)
         positive = jnp.where(state > 0, (state + root) / 2, air / (2 * (root - 2 * pulled + state)))
         return self.bulk_modulus * jnp.where(has_air, positive, state)

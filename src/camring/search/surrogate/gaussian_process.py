@@ -24,6 +24,7 @@ from jax.scipy.linalg import solve_triangular
 from jaxtyping import Array, Bool, Float
 
 from camring.numerics.quantity import real
+from camring.numerics.selection import larger, largest
 
 SMALLEST_CAPACITY = 64
 SMALLEST_JITTER = 1e-12
@@ -124,7 +125,7 @@ def correlation(
     squared_distance = (
         jnp.sum(left**2, axis=1)[:, None] + jnp.sum(right**2, axis=1)[None, :] - 2 * left @ right.T
     )
-    return jnp.exp(-0.5 * jnp.maximum(squared_distance, 0.0))
+    return jnp.exp(-0.5 * larger(squared_distance, 0.0))
 
 
 def masked_correlation(
@@ -157,7 +158,7 @@ def factorise(
 
     def attempt(state: tuple[Array, Array]) -> tuple[Array, Array]:
         last = state[1]
-        jitter = jnp.where(last < 0, 0.0, jnp.maximum(10 * last, SMALLEST_JITTER))
+        jitter = jnp.where(last < 0, 0.0, larger(10 * last, SMALLEST_JITTER))
         diagonal = jnp.where(mask, 1.0 + noise_ratio + jitter, 1.0)
         matrix = off_diagonal + jnp.diag(diagonal)
         return jnp.linalg.cholesky(matrix, symmetrize_input=False), jitter
@@ -193,10 +194,10 @@ def condition(observations: Observations, hyperparameters: Hyperparameters) -> P
     projected = solve_triangular(gram_factor, whitened_basis.T @ whitened_values, lower=True)
     coefficients = solve_triangular(gram_factor, projected, lower=True, trans=1)
     whitened_residual = whitened_values - whitened_basis @ coefficients
-    count = jnp.maximum(jnp.sum(mask), 1)
+    count = larger(jnp.sum(mask), 1)
     # The floor is rounding error: a constant function has no signal to divide by.
-    rounding = 1e-30 * jnp.max(observations.values**2) + 1e-300
-    signal_variance = jnp.maximum(whitened_residual @ whitened_residual / count, rounding)
+    rounding = 1e-30 * largest(observations.values**2) + 1e-300
+    signal_variance = larger(whitened_residual @ whitened_residual / count, rounding)
     return Posterior(
         observations=observations,
         hyperparameters=hyperparameters,
@@ -231,7 +232,7 @@ def predict(
     trend = basis - whitened @ posterior.whitened_basis
     trend_whitened = solve_triangular(posterior.gram_factor, trend.T, lower=True)
     share = 1.0 - jnp.sum(whitened**2, axis=1) + jnp.sum(trend_whitened**2, axis=0)
-    return mean, posterior.signal_variance * jnp.maximum(share, 1e-14)
+    return mean, posterior.signal_variance * larger(share, 1e-14)
 
 
 def leave_one_out(
@@ -252,7 +253,7 @@ def leave_one_out(
     trend = solve_triangular(posterior.gram_factor, posterior.whitened_basis.T, lower=True)
     projected = trend @ posterior.inverse_factor
     diagonal = jnp.sum(posterior.inverse_factor**2, axis=0) - jnp.sum(projected**2, axis=0)
-    diagonal = jnp.where(mask, jnp.maximum(diagonal, 1e-14), 1.0)
+    diagonal = jnp.where(mask, larger(diagonal, 1e-14), 1.0)
     error = jnp.where(mask, -posterior.weights / diagonal, 0.0)
     return error, jnp.where(mask, posterior.signal_variance / diagonal, 0.0)
 

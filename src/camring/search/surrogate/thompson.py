@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float, Int
 
+from camring.numerics.selection import larger
 from camring.search.surrogate.gaussian_process import Posterior, correlation, factorise
 from camring.search.surrogate.surrogate import Surrogate
 
@@ -37,7 +38,7 @@ def _spread(
     trend = jax.scipy.linalg.solve_triangular(posterior.gram_factor, trend.T, lower=True).T
     covariance = correlation(points, points, hyperparameters)
     covariance = covariance - whitened @ whitened.T + trend @ trend.T
-    deviation = jnp.sqrt(jnp.maximum(jnp.diagonal(covariance), 1e-14))
+    deviation = jnp.sqrt(larger(jnp.diagonal(covariance), 1e-14))
     scaled = covariance / (deviation[:, None] * deviation[None, :])
     count = points.shape[0]
     scaled = jnp.where(jnp.eye(count, dtype=bool), 0.0, scaled)

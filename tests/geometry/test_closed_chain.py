@@ -5,7 +5,7 @@ from math import ceil, pi, sqrt
 import numpy as np
 import pytest
 
-from camring.numerics.closed_chain import ChainError, along_links, fit_chain
+from camring.geometry.closed_chain import ChainError, along_links, fit_chain
 
 LONG, SHORT = 1.3, 0.8
 
