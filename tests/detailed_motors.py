@@ -1,5 +1,6 @@
 """Random motors with every law of the detailed laws at once: one structure, one compilation."""
 
+from dataclasses import replace
 from math import pi
 
 import equinox as eqx
@@ -15,11 +16,15 @@ from motors import (
 )
 
 from camring.geometry.notch import ReliefNotch
+from camring.geometry.piston import ReturnSpring
 from camring.geometry.window import RoundWindow
 from camring.physics.friction import ViscousFriction
-from camring.physics.gap import PistonGap
+from camring.physics.gap import PistonGap, PlateGap
+from camring.physics.leakage import ViscousLeakage
 from camring.physics.oil.aerated_fluid import AeratedFluid
+from camring.physics.oil.churning import Churning
 from camring.physics.orifice import LaminarTurbulentOrifice
+from camring.physics.stribeck_friction import StribeckFriction
 
 
 def detailed_case(seed: int, structure: Structure = STRUCTURES[0]) -> Case:
@@ -59,6 +64,72 @@ def detailed_case(seed: int, structure: Structure = STRUCTURES[0]) -> Case:
         modulus_gain=rng.choice([0.0, rng.uniform(4, 12)]),
     )
     return Case(motor, oil, point)
+
+
+# Lobes 1 and 3 idle: the pattern repeats twice a revolution, and windows of the supply lead to the
+# return with their own numbers.
+HALF = (1, 3)
+HALF_STRUCTURE = Structure("radial", 6, 4, 10)
+
+
+def half_case(seed: int, idle: tuple[int, ...] = HALF) -> Case:
+    """A motor with every law, a plate that leaks and idle lobes, whose two sides share nothing."""
+    case = detailed_case(seed, HALF_STRUCTURE)
+    motor, plate = case.motor, case.motor.valve_plate
+    rng = np.random.default_rng([4711, seed])
+    own = {
+        "area": float(plate.port_area) * rng.uniform(0.8, 1.5, size=2),
+        "discharge_coefficient": rng.uniform(0.55, 0.85, size=2),
+        "ramp": rng.uniform(0.3, 1.0, size=2),
+    }
+    notches = [
+        ReliefNotch(plate.pitch * rng.uniform(0.01, 0.05), rng.uniform(0.005, 0.06))
+        for _ in range(2)
+    ]
+    ports = [
+        replace(port, notch=notches[k], **{name: own[name][k] for name in own})
+        for k, port in enumerate((plate.supply, plate.return_))
+    ]
+    plate = replace(plate, supply=ports[0], return_=ports[1], notch=None)
+    radii = 0.4 * float(np.min(np.asarray(motor.cam.control_radii)))
+    gap = PlateGap(6e-6, radii * np.array([0.8, 0.9, 1.1, 1.25]))
+    motor = replace(motor, valve_plate=plate, plate_gap=gap)
+    return Case(motor, case.fluid, replace(case.point, idle_lobes=idle))
+
+
+# The lift counts from the mean radius, so that a spring's travel is another number than it.
+FURTHER_STRUCTURE = Structure("radial", 5, 4, 12, reference="mean")
+
+
+def further_case(seed: int) -> Case:
+    """With springs, contacts that stick at rest, a plate that leaks and oil that is churned."""
+    rng = np.random.default_rng([1818, seed])
+    case = detailed_case(seed, FURTHER_STRUCTURE)
+    motor, speed = case.motor, float(case.point.shaft_speed)
+    stroke = float(np.ptp(np.asarray(motor.cam.control_radii)))
+    preload = 0.02 * float(case.point.pressure_drop * motor.piston.area)
+    surface = speed * float(np.mean(np.asarray(motor.cam.control_radii)))
+    friction = StribeckFriction(
+        damping=motor.friction.damping,
+        roller=rng.uniform(0.003, 0.01),
+        roller_static=rng.uniform(0.03, 0.08),
+        roller_stribeck=surface * rng.uniform(0.3, 1.5),
+        side=rng.uniform(0.01, 0.05),
+        side_static=rng.uniform(0.08, 0.15),
+        side_stribeck=0.3 * surface * rng.uniform(0.2, 1.0),
+    )
+    spring = ReturnSpring(preload / stroke * rng.uniform(0.3, 0.9), preload)
+    ports = 0.4 * float(np.min(np.asarray(motor.cam.control_radii)))
+    plate = PlateGap(rng.uniform(4e-6, 8e-6), ports * np.array([0.8, 0.9, 1.1, 1.25]))
+    leakage = ViscousLeakage(motor.leakage.coefficient, float(case.fluid.viscosity) * 1.7)
+    churning = Churning(rng.uniform(0.02, 0.1), float(np.max(np.asarray(motor.cam.control_radii))))
+    motor = eqx.tree_at(
+        lambda m: (m.friction, m.piston.spring, m.plate_gap, m.leakage, m.churning),
+        motor,
+        (friction, spring, plate, leakage, churning),
+        is_leaf=lambda x: x is None,
+    )
+    return Case(motor, case.fluid, case.point)
 
 
 def quiet_case(seed: int) -> Case:

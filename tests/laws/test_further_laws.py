@@ -8,57 +8,22 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from both_solvers import RESULTS, assert_differences, relative_errors, run, slope_along
-from detailed_motors import detailed_case
-from motors import STEEL, STRUCTURES, Case, Structure, sound_case
+from detailed_motors import further_case
+from motors import STEEL, STRUCTURES, sound_case
 
-from camring.geometry.piston import ReturnSpring, Roller
+from camring.geometry.piston import Roller
 from camring.metrics.batch_summary import summarise_batch
 from camring.metrics.rating_life import Endured, contact_capacity, endured, rating_life
 from camring.numerics.quantity import real
 from camring.physics.batch_cycle import BatchResolution
-from camring.physics.gap import PlateGap
 from camring.physics.heat.batch_simulation import simulate_batch
-from camring.physics.leakage import ViscousLeakage
 from camring.physics.piston_state import quadrature_samples
 from camring.physics.resolution import Resolution
-from camring.physics.stribeck_friction import StribeckFriction
 from camring.programs.batch_program import BatchProgram
 from camring.reference import independent_results
 
-# The lift counts from the mean radius, so that a spring's travel is another number than it.
-STRUCTURE = Structure("radial", 5, 4, 12, reference="mean")
 FINEST = Resolution(elements=2000)
 LOSSES = ("throttling_loss", "leakage_loss", "friction_loss")
-
-
-def further_case(seed):
-    """A motor of every law with springs, contacts that stick at rest, and a plate that leaks."""
-    rng = np.random.default_rng([1818, seed])
-    case = detailed_case(seed, STRUCTURE)
-    motor, speed = case.motor, float(case.point.shaft_speed)
-    stroke = float(np.ptp(np.asarray(motor.cam.control_radii)))
-    preload = 0.02 * float(case.point.pressure_drop * motor.piston.area)
-    surface = speed * float(np.mean(np.asarray(motor.cam.control_radii)))
-    friction = StribeckFriction(
-        damping=motor.friction.damping,
-        roller=rng.uniform(0.003, 0.01),
-        roller_static=rng.uniform(0.03, 0.08),
-        roller_stribeck=surface * rng.uniform(0.3, 1.5),
-        side=rng.uniform(0.01, 0.05),
-        side_static=rng.uniform(0.08, 0.15),
-        side_stribeck=0.3 * surface * rng.uniform(0.2, 1.0),
-    )
-    spring = ReturnSpring(preload / stroke * rng.uniform(0.3, 0.9), preload)
-    ports = 0.4 * float(np.min(np.asarray(motor.cam.control_radii)))
-    plate = PlateGap(rng.uniform(4e-6, 8e-6), ports * np.array([0.8, 0.9, 1.1, 1.25]))
-    leakage = ViscousLeakage(motor.leakage.coefficient, float(case.fluid.viscosity) * 1.7)
-    motor = eqx.tree_at(
-        lambda m: (m.friction, m.piston.spring, m.plate_gap, m.leakage),
-        motor,
-        (friction, spring, plate, leakage),
-        is_leaf=lambda x: x is None,
-    )
-    return Case(motor, case.fluid, case.point)
 
 
 @pytest.fixture(scope="module")

@@ -8,20 +8,17 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from both_solvers import RESULTS, assert_differences, relative_errors, run
-from detailed_motors import detailed_case
-from motors import Case, Structure
+from detailed_motors import further_case
+from motors import Case
 
 from camring.metrics.batch_summary import summarise_batch
 from camring.metrics.power_balance import power_balance
 from camring.numerics.quantity import real
 from camring.physics.batch_cycle import BatchResolution
-from camring.physics.gap import PlateGap
 from camring.physics.heat.batch_simulation import neighbour_batch, simulate_batch
 from camring.physics.heat.collocation import at_collocation_points
 from camring.physics.heat.simulation import neighbour
 from camring.physics.heat.thermal import Thermal
-from camring.physics.leakage import ViscousLeakage
-from camring.physics.oil.churning import Churning
 from camring.physics.oil.presets import OILS, ZERO_CELSIUS, oil_data
 from camring.physics.oil.viscosity_line import ViscosityLine
 from camring.physics.piston_state import quadrature_samples
@@ -29,7 +26,6 @@ from camring.physics.resolution import Resolution
 from camring.programs.batch_program import BatchProgram
 from camring.reference import independent_results
 
-STRUCTURE = Structure("radial", 5, 4, 12, reference="mean")
 FINEST = Resolution(elements=2000)
 SLOPED = ("case_heat", "case_temperature_rise", "output_power", "friction_loss", "case_drain")
 WARM = ("case_heat", "surface_heat", "case_temperature_rise")
@@ -38,18 +34,15 @@ WARM = ("case_heat", "surface_heat", "case_temperature_rise")
 def warm_case(seed):
     """A motor of many laws whose case and films warm: films, contacts, leakage, plate."""
     rng = np.random.default_rng([2929, seed])
-    motor, fluid, point = detailed_case(seed, STRUCTURE)
+    motor, fluid, point = further_case(seed)
     inlet = ZERO_CELSIUS + rng.uniform(25, 60)
-    ports = 0.4 * float(np.min(np.asarray(motor.cam.control_radii)))
-    motor = replace(
-        motor,
-        leakage=ViscousLeakage(motor.leakage.coefficient, float(fluid.viscosity) * 1.7),
-        plate_gap=PlateGap(rng.uniform(4e-6, 8e-6), ports * np.array([0.8, 0.9, 1.1, 1.25])),
-        churning=Churning(
-            rng.uniform(0.02, 0.1), float(np.max(np.asarray(motor.cam.control_radii)))
-        ),
+    swept = (
+        motor.pistons
+        * motor.lobes
+        * float(motor.piston.area)
+        * float(np.ptp(np.asarray(motor.cam.control_radii)))
     )
-    loss = float(run(Case(motor, fluid, point), FINEST)[1].case_heat)
+    loss = 0.1 * swept / (2 * np.pi) * float(point.pressure_drop * point.shaft_speed)  # or so
     cooling = Thermal(
         ambient_temperature=inlet - rng.uniform(5, 40),
         heat_transfer=loss / rng.uniform(40, 200),

@@ -15,14 +15,12 @@ from both_solvers import (
     side_by_side,
     slope_along,
 )
-from detailed_motors import detailed_case
-from motors import Case, Structure, sound_case
+from detailed_motors import half_case
+from motors import sound_case
 
-from camring.geometry.notch import ReliefNotch
 from camring.metrics.starting import starting
 from camring.physics.chamber import chamber_at
 from camring.physics.cycle import reference_radius
-from camring.physics.gap import PlateGap
 from camring.physics.pressure import port_flows, pressure_slope
 from camring.physics.resolution import Resolution
 from camring.physics.rotation import in_mode, turned, with_like_ports
@@ -31,35 +29,7 @@ from camring.reference.chamber import Chamber
 from camring.reference.machine import machine_of
 from camring.reference.standstill import standing_torque
 
-# Lobes 1 and 3 idle, so that windows of the supply lead to the return with their own numbers.
-STRUCTURE = Structure("radial", 6, 4, 10)
 FINEST = Resolution(elements=1500)
-NUMBERS = ("area", "discharge_coefficient", "ramp")
-
-
-def unlike(seed: int) -> Case:
-    """A motor with every law, a plate that leaks and idle lobes, whose two sides share nothing."""
-    case = detailed_case(seed, STRUCTURE)
-    motor, plate = case.motor, case.motor.valve_plate
-    rng = np.random.default_rng([4711, seed])
-    own = {
-        "area": float(plate.port_area) * rng.uniform(0.8, 1.5, size=2),
-        "discharge_coefficient": rng.uniform(0.55, 0.85, size=2),
-        "ramp": rng.uniform(0.3, 1.0, size=2),
-    }
-    notches = [
-        ReliefNotch(plate.pitch * rng.uniform(0.01, 0.05), rng.uniform(0.005, 0.06))
-        for _ in range(2)
-    ]
-    ports = [
-        replace(port, notch=notches[k], **{name: own[name][k] for name in NUMBERS})
-        for k, port in enumerate((plate.supply, plate.return_))
-    ]
-    plate = replace(plate, supply=ports[0], return_=ports[1], notch=None)
-    radii = 0.4 * float(np.min(np.asarray(motor.cam.control_radii)))
-    gap = PlateGap(6e-6, radii * np.array([0.8, 0.9, 1.1, 1.25]))
-    motor = replace(motor, valve_plate=plate, plate_gap=gap)
-    return Case(motor, case.fluid, replace(case.point, idle_lobes=(1, 3)))
 
 
 def ends(motor):
@@ -70,7 +40,7 @@ def ends(motor):
 
 @pytest.fixture(scope="module")
 def apart():
-    case = unlike(0)
+    case = half_case(0)
     return case, *run(case, FINEST)
 
 
@@ -110,7 +80,7 @@ def test_a_narrower_return_throttles_more(apart):
 
 
 def test_many_side_by_side_are_the_motors_alone(apart):
-    cases = [tuple(unlike(seed)) for seed in (0, 2)]
+    cases = [tuple(half_case(seed)) for seed in (0, 2)]
     case, _, metrics = apart
     mine = side_by_side(cases)
     errors = relative_errors(mine, record(metrics), case)
@@ -127,7 +97,7 @@ def test_slopes_are_differences(apart):
 
 
 def test_it_starts_as_the_second_solver_says_both_ways():
-    case = unlike(0)
+    case = half_case(0)
     found = jax.jit(lambda *tree: starting(*tree, angles=200))(*case)
     expected = standing_torque(machine_of(*case), np.asarray(found.angle))
     for mine, theirs in zip((found.forward, found.backward), expected, strict=True):
@@ -142,7 +112,7 @@ def some_chambers(motor):
 
 def test_the_chambers_pressure_rises_as_the_second_solver_writes_it():
     """At one pressure all round a revolution: no orbit, only both writings of the laws."""
-    case = unlike(1)
+    case = half_case(1)
     machine = machine_of(*case)
     chamber = Chamber(machine)
     motor = in_mode(case.motor, case.point.idle_lobes)
