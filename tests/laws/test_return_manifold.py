@@ -151,8 +151,7 @@ class TestAlone:
         _, _, metrics = radial
         assert np.all(np.asarray(metrics.return_line_loss) > 0)
         residual = np.abs(np.asarray(metrics.power_residual))
-        assert np.max(np.delete(residual, 1)) < 1e-9, residual
-        assert residual[1] < 1e-8, residual  # flows turn round in open windows
+        assert np.max(residual) < 1e-9, residual
 
     def test_the_line_takes_away_what_the_pistons_give(self, radial):
         _, cycles, metrics = radial
@@ -195,7 +194,7 @@ class TestBeside:
     def test_every_result_is_that_of_the_independent_solver(self, both, index):
         cycles, metrics = both
         assert int(cycles.verdict.code[index]) == 0
-        assert abs(float(metrics.power_residual[index])) < 1e-8
+        assert abs(float(metrics.power_residual[index])) < 1e-9
         found = errors(single(metrics, index), BOTH[index])
         assert max(found.values()) < 1e-5, found
 
@@ -221,7 +220,7 @@ def test_the_detailed_motor_draws_masses_and_gives_them_back(seed, share, stroke
     assert int(cycle.verdict.code) == 0
     assert float(metrics.line_loss) > share / 2 * float(metrics.input_power)
     assert float(metrics.return_line_loss) > 0.005 * float(metrics.input_power)
-    assert abs(float(metrics.power_residual)) < 1e-7  # with 1000 elements below 1e-9
+    assert abs(float(metrics.power_residual)) < 1e-9
     found = errors(metrics, case)
     assert max(found.values()) < 1e-5, found
 

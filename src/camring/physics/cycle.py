@@ -144,7 +144,8 @@ def periodic_cycle(
     motor = turned(motor, point)
     reference = reference_radius(motor)
     breakpoints = motor.breakpoints()
-    elements = _elements(motor, resolution, resolution.filled if filled is None else filled)
+    sizes = resolution.behind_manifolds() if sides_of(motor) else resolution
+    elements = _elements(motor, sizes, resolution.filled if filled is None else filled)
 
     def orbit_at(held: OperatingPoint, refinements: int) -> Orbit:
         """With both port pressures constant."""
