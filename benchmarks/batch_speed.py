@@ -43,8 +43,8 @@ from camring.programs.compiled import solve
 from camring.reference import independent_results
 
 RESULTS = Path(__file__).with_name("results") / "batch_speed.json"
-RESOLUTIONS = {"search": BatchResolution.search(), "final": BatchResolution()}
-RESOLUTIONS = {"search": Resolution.coarse(), "final": Resolution()}
+OF_BATCHES = {"search": BatchResolution.search(), "final": BatchResolution()}
+OF_ONE_MOTOR = {"search": Resolution.coarse(), "final": Resolution()}
 OF_OBJECTIVE = ("torque_ripple", "pressure_ripple", "efficiency", "jerk_objective")
 EXTREMES = ("max_pressure", "max_contact_stress")
 JAX_CHUNK = 256
@@ -154,7 +154,7 @@ def speeds(given: Given, points: np.ndarray) -> dict[str, float]:
     motor, fluid, point = system.motor, system.fluid, system.operating_points[0]
     rival = partial(independent_results, motor, fluid, point, goal.harmonics, 1e-9)
     rows = {"SciPy LSODA, tolerance 1e-9": wall_times(rival, 1)[0]}
-    for name, resolution in RESOLUTIONS.items():
+    for name, resolution in OF_ONE_MOTOR.items():
 
         def assessed(at, resolution=resolution):
             return evaluate(space.apply(system, at), goal, resolution)
@@ -162,7 +162,7 @@ def speeds(given: Given, points: np.ndarray) -> dict[str, float]:
         alone = partial(eqx.filter_jit(jax.vmap(assessed)), points[:SOME])
         rows[f"one by one under vmap, {name}"] = wall_times(alone, 3)[0] / len(points[:SOME])
     for oil, of_oil in (("", system), (", with air", with_air(system))):
-        for name, resolution in RESOLUTIONS.items():
+        for name, resolution in OF_BATCHES.items():
             fewer = points[: max(len(points) // 8, JAX_CHUNK)]
             run_batch = partial(evaluate_many, space, of_oil, goal)
             with compiled_by_jax():
@@ -179,7 +179,7 @@ def slope_costs(given: Given) -> dict[str, tuple[float, float]]:
     wider = file.design_space, at_one_point(file.system), file.goal
 
     def costs(given: Given) -> tuple[float, float]:
-        points, resolution = points_of(given, SOME), RESOLUTIONS["search"]
+        points, resolution = points_of(given, SOME), OF_BATCHES["search"]
         cycles, _ = assess_and_keep(*given, points, resolution)
         once = partial(evaluate_many, *given, points, resolution, threads=1, chunk=SOME)
         slopes = partial(slopes_in_batch, *given, points, cycles, resolution)
@@ -197,7 +197,7 @@ def ring_costs(system: System, count: int = 64) -> dict[str, float]:
         designs = jax.tree.map(
             lambda leaf: np.broadcast_to(np.asarray(leaf)[..., None], (*leaf.shape, count)), each
         )
-        run = partial(measure, designs, 600, RESOLUTIONS["search"])
+        run = partial(measure, designs, 600, OF_BATCHES["search"])
         rows[name] = processor_times(run, 5)[0] / count
     return rows
 
@@ -218,7 +218,7 @@ def accuracy(given: Given, points: np.ndarray) -> dict[str, list[str]]:
 
     truth = exact(points)
     found = {}
-    for name, resolution in RESOLUTIONS.items():
+    for name, resolution in OF_BATCHES.items():
         metrics = evaluate_many(*given, points, resolution).metrics[0]
         errors = {
             each: np.abs(getattr(metrics, each) / np.asarray(getattr(truth, each)) - 1)
@@ -240,7 +240,7 @@ def slope_errors(given: Given, points: np.ndarray) -> dict[str, list[float]]:
         for at in jnp.asarray(points)
     ]
     errors = {}
-    for name, resolution in RESOLUTIONS.items():
+    for name, resolution in OF_BATCHES.items():
         cycles, _ = assess_and_keep(*given, points, resolution)
         found = slopes_in_batch(*given, points, cycles, resolution).objective
         errors[name] = [
