@@ -174,7 +174,7 @@ def _short_of(climbed: Accurate) -> list[str]:
     return [
         f"An accuracy of {climbed.accuracy:g} was not reached{{}}: the error of "
         f"{climbed.worst_result.replace('_', ' ')} is estimated at {climbed.largest_error:.1e} "
-        f"with {climbed.resolution.elements} elements a lobe, the finest mesh; see `errors` in "
+        f"with {climbed.elements} elements a lobe, the finest mesh; see `errors` in "
         "--json for every result."
     ]
 

@@ -8,9 +8,10 @@ class Resolution:
     """Mesh and spectrum sizes.
 
     `elements` counts collocation elements between the breakpoints of a lobe
-    pitch, beside the one that each breakpoint brings; behind manifolds there are twice as many. The default's measured
-    errors stand in docs/notes/verification.md; `simulate` reports an estimate with
-    every result. Counts shape arrays: another one is another program to compile.
+    pitch, beside the one that each breakpoint brings; behind manifolds there are
+    twice as many. The default's measured errors stand in docs/notes/verification.md;
+    `simulate` reports an estimate with every result. Counts shape arrays: another one
+    is another program to compile.
 
     Examples
     --------

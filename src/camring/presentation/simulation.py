@@ -16,7 +16,6 @@ from camring.files.json_numbers import finite
 from camring.files.motor import MotorFile
 from camring.files.motor.document import printable
 from camring.files.quantities import GROUPS, QUANTITIES, significant
-from camring.metrics.accuracy import Accurate
 from camring.metrics.efficiency import MOTOR, PUMP, working_as
 from camring.metrics.radial_load import ring_orders, shaft_orders
 from camring.presentation.console import console
@@ -39,7 +38,7 @@ def print_table(found: Simulated) -> None:
     ):
         out.print(sentence, markup=False)
     if found.numerical_error:
-        worst, most = max(found.numerical_error), max(map(_elements, found.climbed))
+        worst, most = max(found.numerical_error), max(each.elements for each in found.climbed)
         wanted = found.climbed[0].accuracy
         out.print(
             f"Numerical error: at most {worst:.1g} of any result (estimated; {wanted:g} wanted, "
@@ -233,7 +232,7 @@ def document(found: Simulated) -> str:
         if found.errors:
             record["numerical_error"] = found.numerical_error[place]
             record["errors"] = found.errors[place]
-            record["elements"] = _elements(found.climbed[place])
+            record["elements"] = found.climbed[place].elements
             record["accuracy_reached"] = found.climbed[place].reached
         records.append(record)
     return json.dumps(
@@ -260,10 +259,6 @@ def document(found: Simulated) -> str:
         indent=1,
         allow_nan=False,
     )
-
-
-def _elements(climbed: Accurate) -> int:
-    return climbed.resolution.elements
 
 
 def versions() -> dict[str, str]:

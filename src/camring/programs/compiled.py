@@ -99,7 +99,7 @@ def simulate_to(
     --------
     >>> system = camring.read_motor_file("motor.toml").system
     >>> found = camring.simulate_to(system.motor, system.fluid, system.operating_points[0])
-    >>> found.reached, found.resolution.elements, found.largest_error < 1e-5
+    >>> found.reached, found.elements, found.largest_error < 1e-5
     (True, 320, True)
     """
 
