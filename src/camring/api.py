@@ -127,7 +127,7 @@ def summarise(
     Examples
     --------
     >>> found = camring.summarise(camring.simulate("motor.toml"))
-    >>> len(found), found[0].duty
+    >>> len(found), found[0].operating_mode
     (1, 'motor')
     >>> results = found[0].to_dict()
     >>> round(results["efficiency"], 4), round(results["max_pressure"] / 1e5, 1)

@@ -104,13 +104,13 @@ def test_gradients_are_central_differences(point):
 
 def test_results_as_a_dictionary_are_plain_numbers_and_what_the_machine_works_as(metrics):
     found = metrics.to_dict()
-    assert found.pop("duty") == "motor"
+    assert found.pop("operating_mode") == "motor"
     assert {type(value) for value in found.values()} == {float}
     for name, value in reference_results("mid")[0].items():
         assert found[name] == pytest.approx(value, rel=1e-5, abs=1e-12)
     many = jax.tree.map(lambda value: np.stack([value, value]), metrics).to_dict()
     assert many["stroke"].shape == (2,)
-    assert many["duty"].tolist() == ["motor", "motor"]
+    assert many["operating_mode"].tolist() == ["motor", "motor"]
 
 
 def test_results_print_their_numbers_with_units(metrics):

@@ -37,7 +37,7 @@ def dataset(simulated):
 
 
 def test_a_dataset_says_what_the_machine_works_as(dataset):
-    assert dataset.attrs["duty"] == "motor, pump"
+    assert dataset.attrs["operating_mode"] == "motor, pump"
 
 
 def waves(dataset):

@@ -61,7 +61,7 @@ def test_the_product_of_part_efficiencies_is_the_whole(metrics):
 
 def test_by_volume_a_bench_reads_the_balance_of_energy_itself(metrics):
     np.testing.assert_allclose(metrics.efficiency, metrics.energy_efficiency, rtol=1e-12)
-    assert np.all(metrics.duty == "motor")
+    assert np.all(metrics.operating_mode == "motor")
 
 
 def test_with_return_above_supply_it_is_a_pump_with_a_pumps_efficiencies(cases):
@@ -74,7 +74,7 @@ def test_with_return_above_supply_it_is_a_pump_with_a_pumps_efficiencies(cases):
         for case in cases
     ]
     _, found = run_all(reversed_drop)
-    assert np.all(found.duty == "pump")
+    assert np.all(found.operating_mode == "pump")
     shaft, oil = -np.asarray(found.output_power), -np.asarray(found.input_power)
     np.testing.assert_allclose(found.energy_efficiency, oil / shaft, rtol=1e-12)
     assert np.all((oil > 0) & (oil < shaft))

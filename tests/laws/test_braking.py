@@ -48,7 +48,7 @@ def test_the_balance_of_energy_closes_in_every_quadrant(found, quadrant):
 @pytest.mark.parametrize("quadrant", QUADRANTS)
 def test_where_the_load_drives_the_machine_is_a_pump_and_loses_what_a_pump_loses(found, quadrant):
     here = found[quadrant]
-    assert here.duty == ("motor" if quadrant[1] > 0 else "pump")
+    assert here.operating_mode == ("motor" if quadrant[1] > 0 else "pump")
     assert 0.5 < float(here.efficiency) < 1
     assert float(here.throttling_loss) > 0
     assert float(here.friction_loss) > 0

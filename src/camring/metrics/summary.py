@@ -33,7 +33,7 @@ class Metrics(eqx.Module):
     Examples
     --------
     >>> [found] = camring.summarise(camring.simulate("motor.toml"))
-    >>> f"{float(found.supply_flow) * 6e4:.1f} L/min", found.duty
+    >>> f"{float(found.supply_flow) * 6e4:.1f} L/min", found.operating_mode
     ('71.3 L/min', 'motor')
     """
 
@@ -58,7 +58,7 @@ class Metrics(eqx.Module):
     case_drain: Q[Float[Array, ""], "m3/s"]
     """Mean leakage into the case, as a flow meter there would show it."""
     efficiency: Q[Float[Array, ""], "1"]
-    """What a test bench reads; a pump's where `duty` says so. See `metrics.efficiency`."""
+    """What a test bench reads; a pump's where `operating_mode` says. See `metrics.efficiency`."""
     volumetric_efficiency: Q[Float[Array, ""], "1"]
     hydromechanical_efficiency: Q[Float[Array, ""], "1"]
     energy_efficiency: Q[Float[Array, ""], "1"]
@@ -113,16 +113,16 @@ class Metrics(eqx.Module):
     spectral_torque: Q[Float[Array, ""], "1"]
 
     @property
-    def duty(self) -> str | np.ndarray:
+    def operating_mode(self) -> str | np.ndarray:
         """Whether it works as `motor`, `pump` or `brake`; an array of words for a batch."""
         found = working_as(self.input_power, self.output_power)
         return found if found.ndim else str(found)
 
     def to_dict(self) -> dict[str, float | str | np.ndarray]:
-        """Plain numbers by name, SI, and `duty`; arrays where it holds many motors."""
+        """Plain numbers by name, SI, and `operating_mode`; arrays where it holds many motors."""
         numbers = {name: np.asarray(value) for name, value in vars(self).items()}
         plain = {name: each if each.ndim else float(each) for name, each in numbers.items()}
-        return {**plain, "duty": self.duty}
+        return {**plain, "operating_mode": self.operating_mode}
 
     def __repr__(self) -> str:
         rows = list(written_fields(self))

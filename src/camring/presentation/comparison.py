@@ -142,7 +142,7 @@ def document(found: Comparison) -> str:
                         "input": printable(each.simulated.file.path),
                         "name": each.simulated.file.system.motor.name,
                         "results": [
-                            {**one, "duty": mode}
+                            {**one, "operating_mode": mode}
                             for one, mode in zip(
                                 each.simulated.outcome.results,
                                 working_modes(each.simulated),

@@ -204,7 +204,7 @@ def document(
 def _content(grid: Grid) -> dict[str, Any]:
     return {
         "results": {name: values.tolist() for name, values in grid.results.items()},
-        "duty": grid.mode.tolist(),
+        "operating_mode": grid.mode.tolist(),
         "faults": grid.faults.tolist(),
         "limits": grid.limits,
         "warnings": grid.warnings(),

@@ -222,7 +222,7 @@ def document(found: Simulated) -> str:
     file, outcome = found.file, found.outcome
     records: list[dict[str, Any]] = []
     for place, results in enumerate(outcome.results):
-        record: dict[str, Any] = {**results, "duty": working_modes(found)[place]}
+        record: dict[str, Any] = {**results, "operating_mode": working_modes(found)[place]}
         record |= _start(found, place)
         if found.idle_drags[place]:
             record["idle_drag"] = found.idle_drags[place]

@@ -17,7 +17,7 @@ def works_as(results: Sequence[Mapping[str, float]]) -> dict[str, str]:
     if not results or not {"input_power", "output_power"} <= results[0].keys():
         return {}
     words = [str(working_as(each["input_power"], each["output_power"])) for each in results]
-    return {"duty": ", ".join(words)}
+    return {"operating_mode": ", ".join(words)}
 
 
 def attributes_of(system: "System", source: str) -> dict[str, object]:
