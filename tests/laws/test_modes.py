@@ -22,8 +22,8 @@ from camring.geometry.idle_lobes import pattern_repeats
 from camring.metrics.displacement import driving, rises_between_knots
 from camring.metrics.idle_drag import idle_drag
 from camring.metrics.radial_load import radial_load
-from camring.metrics.spectrum import quadrature_samples
 from camring.metrics.starting import starting
+from camring.physics.piston_state import quadrature_samples
 from camring.physics.resolution import Resolution
 from camring.physics.rotation import in_mode, turned
 from camring.reference import independent_results

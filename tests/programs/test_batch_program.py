@@ -160,7 +160,7 @@ def test_a_member_never_depends_on_its_neighbours():
 def test_the_next_process_compiles_nothing_and_has_the_same_numbers(folder, compilations):
     first = BatchProgram(interpolate)(*tables())
     assert len(compilations) == len(kept(folder)) == 1
-    assert kept(folder)[0].name.startswith("interpolate-lanes-")
+    assert kept(folder)[0].name.startswith("interpolate-batch-")
     for members in (13, 1, 40):  # a new one knows nothing but the disk
         near(BatchProgram(interpolate)(*tables(members)), jax.jit(interpolate)(*tables(members)))
     same(BatchProgram(interpolate)(*tables()), first)
@@ -297,7 +297,7 @@ def test_the_switch_lets_jax_do_everything(folder, compilations, monkeypatch):
         same(found, jax.jit(running_total)(rows()))
     assert not compilations
     assert not program.hindrances
-    assert not [each for each in kept(folder) if "-lanes-" in each.name]
+    assert not [each for each in kept(folder) if "-batch-" in each.name]
     monkeypatch.setenv(SWITCH, "on")
     program(rows())
     assert len(compilations) == 1

@@ -11,6 +11,7 @@ is differentiated by a compiler.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
+from typing import Any
 
 import numpy as np
 from jaxtyping import Complex, Float
@@ -137,7 +138,7 @@ def _distances(
     return residual, foot, np.real(np.conj(place.normal) * np.exp(1j * foot))
 
 
-def _basis(angle: np.ndarray, count: int, repeats: int, degree: int) -> tuple:
+def _basis(angle: np.ndarray, count: int, repeats: int, degree: int) -> tuple[Any, ...]:
     """Columns and weights of the control radii at angles, shapes (point, degree + 1)."""
     spacing = 2 * pi / repeats / count
     position = angle / spacing + (degree + 1) / 2
@@ -147,7 +148,9 @@ def _basis(angle: np.ndarray, count: int, repeats: int, degree: int) -> tuple:
     return columns, powers @ basis_matrix(degree).T, count
 
 
-def _solve(basis: tuple, wanted: np.ndarray, scale: np.ndarray | float = 1.0) -> np.ndarray:
+def _solve(
+    basis: tuple[Any, ...], wanted: np.ndarray, scale: np.ndarray | float = 1.0
+) -> np.ndarray:
     """Least squares by normal equations; cardinal splines keep them well conditioned."""
     columns, weights, count = basis
     weights = weights * np.asarray(scale)[..., None]

@@ -7,6 +7,7 @@ opening side where it comes to a given share. docs/theory.md sections 3 and 13.
 
 from abc import abstractmethod
 from math import pi
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -141,7 +142,7 @@ def lens_share(overlap: Q[Float[Array, "*grid"], "1"]) -> Q[Float[Array, "*grid"
 
 
 @lens_share.defjvp
-def _lens_share_slope(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
+def _lens_share_slope(primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> tuple[Array, Array]:
     # The formula's own derivative is 0 times infinity where the circles touch.
     (overlap,), (rate,) = primals, tangents
     return lens_share(overlap), 4 / pi * jnp.sqrt(overlap * (2 - overlap)) * rate

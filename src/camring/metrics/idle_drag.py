@@ -3,9 +3,9 @@
 from jaxtyping import Array, Float
 
 from camring.metrics.displacement import driving
-from camring.metrics.spectrum import quadrature_samples
 from camring.numerics.quantity import Q
 from camring.physics.cycle import Cycle
+from camring.physics.piston_state import quadrature_samples
 
 __all__ = ["idle_drag"]
 

@@ -13,12 +13,11 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
-from camring.metrics.spectrum import quadrature_samples
 from camring.numerics.quantity import Q
 from camring.numerics.selection import largest
 from camring.physics.cycle import Cycle
 from camring.physics.motor import Motor
-from camring.physics.piston_state import PistonState, sample_angles
+from camring.physics.piston_state import PistonState, quadrature_samples, sample_angles
 
 __all__ = ["RadialLoad", "radial_load", "ring_orders", "shaft_orders"]
 

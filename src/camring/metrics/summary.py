@@ -16,7 +16,7 @@ from camring.metrics.displacement import rises_between_knots
 from camring.metrics.efficiency import efficiencies, working_as
 from camring.metrics.power_balance import PowerBalance, power_balance
 from camring.metrics.rating_life import Endured, endured, rating_life
-from camring.metrics.spectrum import chamber_spectra, of_all_pistons, quadrature_samples
+from camring.metrics.spectrum import chamber_spectra, of_all_pistons
 from camring.metrics.stiffness import oscillator
 from camring.metrics.torque_range import torque_range
 from camring.numerics.extremum import EXTREMUM_FRACTIONS, maximum, minimum, total_variation
@@ -24,7 +24,7 @@ from camring.numerics.quantity import Q
 from camring.numerics.readable import written_fields
 from camring.numerics.selection import larger
 from camring.physics.cycle import Cycle
-from camring.physics.piston_state import sample_elements
+from camring.physics.piston_state import quadrature_samples, sample_elements
 
 
 class Metrics(eqx.Module):

@@ -6,7 +6,7 @@ wave's orders, `k` and `-k` come from the same sums.
 """
 
 from functools import lru_cache, partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -59,7 +59,7 @@ def power_of_orders(wave: Wave, orders: int, derivative: int = 0) -> Float[Array
 
 @power_of_orders.defjvp
 def _power_slope(
-    orders: int, derivative: int, primals: tuple, tangents: tuple
+    orders: int, derivative: int, primals: tuple[Any, ...], tangents: tuple[Any, ...]
 ) -> tuple[Array, Array]:
     # The gradient once, by the transposes of all stages, however many directions there are.
     (wave,) = primals

@@ -1,7 +1,7 @@
 """Newton on the stage states of a whole period at once, held back where it leaps."""
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
@@ -41,11 +41,11 @@ def damped_newton(
         Steps at most; so many are a sign that it is lost.
     """
 
-    def unfinished(carry: tuple) -> Array:
+    def unfinished(carry: tuple[Any, ...]) -> Array:
         _, _, _, size, count = carry
         return jnp.any(size > tolerance) & (count < limit)
 
-    def improve(carry: tuple) -> tuple:
+    def improve(carry: tuple[Any, ...]) -> tuple[Any, ...]:
         current, before, part, size, count = carry
         updated = improved(current)
         step = jax.tree.map(jnp.subtract, updated, current)

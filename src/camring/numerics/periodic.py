@@ -27,7 +27,7 @@ Arrays run over points of an element first and over elements last, so that the
 long axis is the one that a vector unit runs along.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax
@@ -150,7 +150,9 @@ def solve_periodic(
         frozen, at_stages, mesh, frozen.guess(at_stages), tolerances[0], limit
     )
 
-    def refine(current: tuple, tolerance: float | Float[Array, ""]) -> tuple[tuple, None]:
+    def refine(
+        current: tuple[Any, ...], tolerance: float | Float[Array, ""]
+    ) -> tuple[tuple[Any, ...], None]:
         """Lays a mesh by what was found on the one before, and solves on it."""
         mesh, at_stages, stages, _ = current
         node_state, stages = newton_step(frozen, at_stages, mesh, stages)
@@ -250,7 +252,7 @@ def eliminate(
     ]
     growth, offset = solve_stages(matrix, [jnp.ones_like(step)] * 3, defect)
 
-    def compose(so_far: tuple, element: tuple) -> tuple:
+    def compose(so_far: tuple[Any, ...], element: tuple[Any, ...]) -> tuple[Any, ...]:
         product, total = so_far
         product = element[0] * product
         # Far below rounding against the offsets; as a denormal number it would cost a hundred

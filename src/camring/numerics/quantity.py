@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Array, Float
 from jaxtyping import ArrayLike as ArrayLike
 
-jax.config.update("jax_enable_x64", True)
+jax.config.update("jax_enable_x64", True)  # type: ignore[no-untyped-call]
 
 __all__ = ["Q", "real"]
 

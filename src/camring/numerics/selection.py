@@ -6,6 +6,8 @@ is lost: on some processors, in some programs, for some of the samples. Here the
 asks which number is larger, and a number that misses the largest by rounding counts as it.
 """
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 from jax.typing import ArrayLike
@@ -66,19 +68,21 @@ def _smaller(one: Array, other: Array) -> Array:
     return jnp.minimum(one, other)
 
 
-def _chosen(first: Bool[Array, "*grid"], second: Bool[Array, "*grid"], slopes: tuple) -> Array:
+def _chosen(
+    first: Bool[Array, "*grid"], second: Bool[Array, "*grid"], slopes: tuple[Any, ...]
+) -> Array:
     one, other = slopes
     return jnp.where(first, one, jnp.where(second, other, (one + other) / 2))
 
 
 @_larger.defjvp
-def _larger_slope(numbers: tuple, slopes: tuple) -> tuple[Array, Array]:
+def _larger_slope(numbers: tuple[Any, ...], slopes: tuple[Any, ...]) -> tuple[Array, Array]:
     one, other = numbers
     return _larger(one, other), _chosen(one > other, other > one, slopes)
 
 
 @_smaller.defjvp
-def _smaller_slope(numbers: tuple, slopes: tuple) -> tuple[Array, Array]:
+def _smaller_slope(numbers: tuple[Any, ...], slopes: tuple[Any, ...]) -> tuple[Array, Array]:
     one, other = numbers
     return _smaller(one, other), _chosen(one < other, other < one, slopes)
 
@@ -89,7 +93,7 @@ def _largest(values: Float[Array, "*grid"], axis: int | tuple[int, ...] | None) 
         return jnp.max(values, axis=axis)
 
     @found.defjvp
-    def slope(numbers: tuple, slopes: tuple) -> tuple[Array, Array]:
+    def slope(numbers: tuple[Any, ...], slopes: tuple[Any, ...]) -> tuple[Array, Array]:
         (values,), (slopes_of_all,) = numbers, slopes
         top = jnp.max(values, axis=axis, keepdims=True)
         span = top - jnp.min(values, axis=axis, keepdims=True)

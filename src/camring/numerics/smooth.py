@@ -62,7 +62,7 @@ def _signed_root(x: Array, softness: Array) -> tuple[Array, Array, Array]:
     return x * inverse, inverse * (1 - share * share / 2), -share * square * inverse * softness / 2
 
 
-def _signed_root_slopes(primals: tuple, tangents: tuple) -> tuple[Array, Array]:
+def _signed_root_slopes(primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> tuple[Array, Array]:
     root, *slopes = _signed_root(*primals)
     parts: list[Any] = [
         slope * tangent

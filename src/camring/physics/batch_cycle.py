@@ -7,7 +7,7 @@ windows and the manifolds. `fits` says which motors can go this way.
 """
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -256,7 +256,7 @@ def _equation(
 
 
 def _forcing(
-    parameters: tuple,
+    parameters: tuple[Any, ...],
     start: Float[Array, "element batch"],
     width: Float[Array, "element batch"],
     fraction: Float[Array, " point"],
@@ -265,11 +265,11 @@ def _forcing(
     return operating_at(motor, reference, start + fraction[:, None, None] * width)
 
 
-def _rate(parameters: tuple, here: Operating, state: Array) -> Array:
+def _rate(parameters: tuple[Any, ...], here: Operating, state: Array) -> Array:
     return rate_in_state(parameters, here.chamber, state)
 
 
-def _guess(parameters: tuple, here: Operating) -> Array:
+def _guess(parameters: tuple[Any, ...], here: Operating) -> Array:
     return quasi_steady(parameters, here.chamber)
 
 

@@ -1,6 +1,6 @@
 """What a chamber is at each angle, whatever the pressure in it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from jaxtyping import Array, Float
 
@@ -34,7 +34,7 @@ def chamber_between(
 
 
 def chamber_alone(
-    parameters: tuple,
+    parameters: tuple[Any, ...],
     start: Q[Float[Array, " element"], "rad"],
     width: Q[Float[Array, " element"], "rad"],
     fraction: Float[Array, " point"],

@@ -8,6 +8,7 @@ motor says; `heat/simulation.py` finds out how warm that is, and `piston_state.p
 """
 
 from math import pi
+from typing import Any
 
 import equinox as eqx
 import jax
@@ -99,12 +100,12 @@ def reference_radius(motor: Motor) -> Q[Float[Array, ""], "m"]:
     return extreme_radius(motor.cam, -1)
 
 
-def rate_in_state(parameters: tuple, chamber: Chamber, state: Array) -> Array:
+def rate_in_state(parameters: tuple[Any, ...], chamber: Chamber, state: Array) -> Array:
     motor, fluid, point, _ = parameters
     return state_rate(motor, fluid, point, chamber, state)
 
 
-def quasi_steady(parameters: tuple, chamber: Chamber) -> Array:
+def quasi_steady(parameters: tuple[Any, ...], chamber: Chamber) -> Array:
     """State of a chamber that stands still: a mean of the ports' pressures by their openings."""
     motor, fluid, point, _ = parameters
     supply, back = chamber.supply_area, chamber.return_area

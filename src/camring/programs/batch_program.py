@@ -119,7 +119,7 @@ class BatchProgram(Generic[Arguments, Result]):
             name = program_name(self._function, one_design, made_by())
         except Indescribable:
             return None
-        return Path(folder) / f"{self._function.__name__}-lanes-{name}{SUFFIX}"
+        return Path(folder) / f"{self._function.__name__}-batch-{name}{SUFFIX}"
 
 
 _warned = threading.Event()

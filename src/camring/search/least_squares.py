@@ -9,7 +9,7 @@ below one count by how well the model meets them.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -80,9 +80,9 @@ class _Remembered:
 
     def __init__(self, model: Model) -> None:
         self.model, self.count = model, 0
-        self._here: tuple[bytes, tuple] | None = None
+        self._here: tuple[bytes, tuple[Any, ...]] | None = None
 
-    def __call__(self, point: Point) -> tuple:
+    def __call__(self, point: Point) -> tuple[Any, ...]:
         if self._here is None or self._here[0] != point.tobytes():
             self._here = point.tobytes(), self.model(point)
             self.count += 1

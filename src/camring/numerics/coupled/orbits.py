@@ -19,7 +19,7 @@ on one laid from that solution, which knows what the copies do to one another.
 
 from collections.abc import Sequence
 from functools import reduce
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -103,7 +103,7 @@ def solve_coupled(
     """
     frozen, fixed = equation.frozen(), jax.tree.map(stop_gradient, breakpoints)
 
-    def refine(current: tuple, tolerance: Array) -> tuple:
+    def refine(current: tuple[Any, ...], tolerance: Array) -> tuple[Any, ...]:
         """Solves on a mesh, and lays the next one; kept is what was solved."""
         laid, stages = current
         mesh = fold(laid, period, links)
@@ -120,7 +120,7 @@ def solve_coupled(
     own = _at_stages(alone, fold(alone.mesh, period, links), period)
     still = [jnp.broadcast_to(stop_gradient(each), own.shape) for each in shared_guess]
     tolerances = jnp.array([ROUGH_TOLERANCE, TOLERANCE])
-    refined: tuple
+    refined: tuple[Any, ...]
     _, refined = jax.lax.scan(refine, (alone.mesh, side_by_side(own, still, links)), tolerances)
     laid, stages, iterations = jax.tree.map(lambda each: each[-1], refined)
 

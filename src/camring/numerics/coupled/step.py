@@ -86,7 +86,9 @@ def _slope(function: Callable[[Array], Any], at: Array) -> tuple[Any, Any]:
     return jax.jvp(function, (at,), (jnp.ones_like(at),))
 
 
-def _slope_by(number: int, function: Callable[[tuple], Any], at: tuple[Array, ...]) -> Any:
+def _slope_by(
+    number: int, function: Callable[[tuple[Any, ...]], Any], at: tuple[Array, ...]
+) -> Any:
     """Elementwise slope by one of some arrays."""
     return _slope(lambda one: function((*at[:number], one, *at[number + 1 :])), at[number])[1]
 
@@ -97,13 +99,13 @@ def _linear(equation: CoupledEquation, forcing: Forcing, stages: Array) -> _Line
     common = tuple(stages[:, links + s] for s in numbers)
     spread = tuple(jnp.broadcast_to(each[:, None], own.shape) for each in common)
 
-    def both(state: Array, shared: tuple) -> tuple[Array, tuple[Array, ...]]:
+    def both(state: Array, shared: tuple[Any, ...]) -> tuple[Array, tuple[Array, ...]]:
         return (
             equation.rate(equation.parameters, forcing, state, shared),
             equation.draw(equation.parameters, forcing, state, shared),
         )
 
-    def of_shared(shared: tuple, taken: tuple) -> tuple[Array, ...]:
+    def of_shared(shared: tuple[Any, ...], taken: tuple[Any, ...]) -> tuple[Array, ...]:
         return equation.shared_rate(equation.parameters, shared, taken)
 
     # What does not depend on an argument stays outside of its derivative.
@@ -242,7 +244,7 @@ def _close(
 ) -> Float[Array, "state element"]:
     """States at all nodes: each copy ends where the next began, a shared one where it began."""
 
-    def compose(so_far: tuple, element: tuple) -> tuple:
+    def compose(so_far: tuple[Any, ...], element: tuple[Any, ...]) -> tuple[Any, ...]:
         product, total = so_far
         matrix, rest = element
         return (matrix @ product, matrix @ total + rest), so_far

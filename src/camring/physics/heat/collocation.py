@@ -10,7 +10,7 @@ from camring.physics.pressure import pressure_slope
 
 
 def at_collocation_points(found: BatchCycle) -> QuadratureSamples:
-    """Sample cycles at their collocation points, arrays (3, element, lane)."""
+    """Sample cycles at their collocation points, arrays (3, element, batch)."""
     cycle, (radius, chamber) = found.cycle, found.at_stages
     mesh = cycle.orbit.mesh
     angle = positions(mesh, jnp.asarray(STAGES))

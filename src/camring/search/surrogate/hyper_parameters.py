@@ -8,6 +8,7 @@ at each trial.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -232,10 +233,10 @@ def _warp_from_list(values: Sequence[float | None]) -> Warp:
     return Warp(0.0 if centre is None else centre, np.inf if scale is None else scale)
 
 
-def _fitted_to_list(fitted: Fitted) -> list[list]:
+def _fitted_to_list(fitted: Fitted) -> list[list[Any]]:
     return [list(fitted.parameters), [list(row) for row in fitted.axes or ()]]
 
 
-def _fitted_from_list(values: Sequence[Sequence]) -> Fitted:
+def _fitted_from_list(values: Sequence[Sequence[Any]]) -> Fitted:
     parameters, axes = values
     return Fitted(tuple(parameters), tuple(tuple(row) for row in axes) if axes else None)
