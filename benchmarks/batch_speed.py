@@ -26,7 +26,15 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from stopwatch import processor_times, wall_times
-from wheel_motor import as_given, at_one_point, free_ring, of_twenty_variables, with_air
+from wheel_motor import (
+    as_given,
+    at_one_point,
+    free_ring,
+    of_twenty_variables,
+    with_air,
+    with_every_law,
+    with_heat,
+)
 
 from camring.evaluation.batch import CHUNK, assess_and_keep, cores, evaluate_many, slopes_in_batch
 from camring.metrics.summary import summarise
@@ -86,6 +94,14 @@ def main() -> None:
     for name, value in rings.items():
         print(f"| {name} | {microseconds(value)} | {value / rings['lobe']:.3g} |")
 
+    laws = law_costs(given)
+    print("\n| laws, processor time of one design | search | final | ratios |\n|---|---|---|---|")
+    for name, values in laws.items():
+        ratios = ", ".join(
+            f"{laws_of / plain:.3g}" for laws_of, plain in zip(values, laws["plain"])
+        )
+        print(f"| {name} | {' | '.join(map(microseconds, values))} | {ratios} |")
+
     errors = accuracy(given, points[:64])
     print("\n| resolution | objective terms, median and worst | mean torque | extremes |")
     print("|---|---|---|---|")
@@ -109,6 +125,7 @@ def main() -> None:
         "seconds": rows,
         "slope_seconds": costs,
         "ring_seconds": rings,
+        "law_seconds": laws,
         "errors": errors,
         "slopes": off,
         "growth": growth,
@@ -199,6 +216,21 @@ def ring_costs(system: System, count: int = 64) -> dict[str, float]:
         )
         run = partial(measure, designs, 600, OF_BATCHES["search"])
         rows[name] = processor_times(run, 5)[0] / count
+    return rows
+
+
+def law_costs(given: Given) -> dict[str, list[float]]:
+    """Processor seconds of a design of the space at either resolution, by the motor's laws."""
+    space, plain, goal = given
+    points, rows = points_of(given, SOME), {}
+    kinds = {"plain": plain, "with air": with_air(plain)}
+    kinds |= {"every law": with_every_law(plain), "every law and heat": with_heat(plain)}
+    for name, system in kinds.items():
+        run = partial(evaluate_many, space, system, goal, points, threads=1, chunk=SOME)
+        rows[name] = [
+            processor_times(partial(run, resolution), 5)[0] / SOME
+            for resolution in OF_BATCHES.values()
+        ]
     return rows
 
 

@@ -46,6 +46,73 @@ def tanh_ratio(squared: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
 
 
 @jax.custom_jvp
+def inverse(x: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
+    """`1/x`; value and slope share the division."""
+    return 1 / x
+
+
+@inverse.defjvp
+def _inverse_slope(primals: tuple[Array], tangents: tuple[Array]) -> tuple[Array, Array]:
+    found = inverse(primals[0])
+    return found, -found * found * tangents[0]
+
+
+@jax.custom_jvp
+def inverse_root(x: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
+    """`1/sqrt(x)` for `x > 0`; value and slope share root and division."""
+    return 1 / jnp.sqrt(x)
+
+
+@inverse_root.defjvp
+def _inverse_root_slope(primals: tuple[Array], tangents: tuple[Array]) -> tuple[Array, Array]:
+    found = inverse_root(primals[0])
+    return found, -found * found * found / 2 * tangents[0]
+
+
+@jax.custom_jvp
+def power(x: Float[Array, "*grid"], exponent: Float[Array, ""]) -> Float[Array, "*grid"]:
+    """`x ** exponent` for `x > 0`, whose slope by `x` takes no second exponential."""
+    return jnp.exp(exponent * jnp.log(x))
+
+
+def _power_slope(primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> tuple[Array, Array]:
+    (x, exponent), (along, along_exponent) = primals, tangents
+    found = power(x, exponent)
+    slope = jnp.zeros_like(found)
+    if not isinstance(along, SymbolicZero):
+        slope = found * exponent * inverse(x) * along
+    if not isinstance(along_exponent, SymbolicZero):
+        slope = slope + found * jnp.log(x) * along_exponent
+    return found, slope
+
+
+power.defjvp(_power_slope, symbolic_zeros=True)
+
+
+@jax.custom_jvp
+def stiffening_decay(
+    strain: Float[Array, "*grid"], gain: Float[Array, ""]
+) -> Float[Array, "*grid"]:
+    """`(1 + gain strain)^(-1/gain)`, the exponential of `-strain` where the gain is zero."""
+    return jnp.exp(-strain * logarithmic_mean(gain * strain))
+
+
+def _decay_slope(primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> tuple[Array, Array]:
+    (strain, gain), (along, along_gain) = primals, tangents
+    found = stiffening_decay(strain, gain)
+    slope = jnp.zeros_like(found)
+    if not isinstance(along, SymbolicZero):
+        slope = -found * inverse(1 + gain * strain) * along
+    if not isinstance(along_gain, SymbolicZero):
+        _, bend = jax.jvp(lambda g: logarithmic_mean(g * strain), (gain,), (along_gain,))
+        slope = slope - found * strain * bend
+    return found, slope
+
+
+stiffening_decay.defjvp(_decay_slope, symbolic_zeros=True)
+
+
+@jax.custom_jvp
 def signed_root(x: Float[Array, "*grid"], softness: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
     """`x / (x^2 + softness^2)^(1/4)`: a root that carries the sign, straight through zero.
 

@@ -1,14 +1,14 @@
 """Flow through the opening between a port and a chamber."""
 
 from abc import abstractmethod
-from math import pi
+from math import pi, sqrt
 
 import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
 from camring.numerics.quantity import Q, real
-from camring.numerics.smooth import signed_root, tanh_ratio
+from camring.numerics.smooth import inverse, inverse_root, signed_root, tanh_ratio
 from camring.physics.oil.fluid import AbstractFluid
 
 
@@ -75,7 +75,7 @@ class TurbulentOrifice(AbstractSquareRootOrifice):
         fluid: AbstractFluid,
     ) -> Q[Float[Array, "*grid"], "m3/s"]:
         root = signed_root(drop, fluid.transition_pressure)
-        return self.discharge_coefficient * area * jnp.sqrt(2 / density) * root
+        return self.discharge_coefficient * area * sqrt(2) * inverse_root(density) * root
 
 
 class LaminarTurbulentOrifice(AbstractSquareRootOrifice):
@@ -113,6 +113,6 @@ class LaminarTurbulentOrifice(AbstractSquareRootOrifice):
         open_area = jnp.where(area > 0, area, 1.0)
         diameter = jnp.sqrt(4 * open_area / pi)
         k = jnp.where(area > 0, 2 * diameter / (fluid.viscosity * self.critical_flow_number), 0.0)
-        flow = 2 * drop / density
+        flow = 2 * drop * inverse(density)
         speed = k * flow * tanh_ratio(k**2 * jnp.abs(flow))
         return self.discharge_coefficient * area * speed

@@ -14,6 +14,7 @@ from jaxtyping import Array, Float
 
 from camring.geometry.valve_plate import Port
 from camring.numerics.quantity import Q
+from camring.numerics.smooth import inverse
 from camring.physics.chamber import Chamber
 from camring.physics.motor import Motor
 from camring.physics.oil.fluid import AbstractFluid, OilAt
@@ -80,7 +81,8 @@ def pressure_slope(
     here = fluid.at(pressure)
     flows = _flows(motor, fluid, point, chamber, pressure, here)
     net = (flows.supply + flows.return_ - flows.leakage) / point.shaft_speed
-    return (net - here.content * chamber.volume_slope) / (here.content_slope * chamber.volume)
+    capacity = here.content_slope * chamber.volume
+    return (net - here.content * chamber.volume_slope) * inverse(capacity)
 
 
 def state_rate(

@@ -24,7 +24,7 @@ from camring.physics.cycle import Cycle
 from camring.physics.motor import Motor
 from camring.physics.piston_state import QuadratureSamples
 
-FROZEN_STEPS = 4
+FROZEN_STEPS = 2
 """Newton steps on the rise while the chamber's pressure stays."""
 CLOSED = 1e-5  # K, and share of the rise, to which the balance of heat must close
 
@@ -40,12 +40,17 @@ class HeatFlows(NamedTuple):
     """Out of its case."""
 
 
-def heat_flows(cycle: Cycle, samples: QuadratureSamples) -> HeatFlows:
-    """Heat that stays in a motor, and the oil that takes it along."""
+def heat_flows(
+    cycle: Cycle, samples: QuadratureSamples, drop: Float[Array, "*grid"] | None = None
+) -> HeatFlows:
+    """Heat that stays in a motor, and the oil that takes it along.
+
+    `drop` is `leakage_drop` where it is at hand.
+    """
     motor, fluid, point, piston = cycle.motor, cycle.fluid, cycle.point, samples.piston
     in_case, speed = fluid.potential(point.case_pressure), point.shaft_speed
     damping = motor.viscous_damping(fluid)
-    falling = piston.leakage_flow * (fluid.potential(piston.chamber_pressure) - in_case)
+    falling = piston.leakage_flow * (leakage_drop(cycle, samples) if drop is None else drop)
     rubbing = damping * (speed * piston.radius.first) ** 2 + speed * piston.friction_torque
     heat = motor.pistons * samples.mean(falling + rubbing)
     drained = motor.pistons * samples.mean(piston.leakage_flow)
@@ -58,6 +63,13 @@ def heat_flows(cycle: Cycle, samples: QuadratureSamples) -> HeatFlows:
         heat = heat + plate.return_to_case * (at_return - in_case)
         drained = drained + plate.supply_to_case + plate.return_to_case
     return HeatFlows(heat, drained * mass_of_amount(cycle))
+
+
+def leakage_drop(cycle: Cycle, samples: QuadratureSamples) -> Float[Array, "*grid"]:
+    """Potential that oil loses on its way from the chamber into the case."""
+    fluid = cycle.fluid
+    in_case = fluid.potential(cycle.point.case_pressure)
+    return fluid.potential(samples.piston.chamber_pressure) - in_case
 
 
 def mass_of_amount(cycle: Cycle) -> Float[Array, "*batch"]:
@@ -96,23 +108,28 @@ def rise_of(cycle: Cycle) -> Q[Float[Array, "*batch"], "K"]:
     return thermal.rise
 
 
-def missed(cycle: Cycle, sampled: Sampled) -> Q[Float[Array, "*batch"], "K"]:
+def missed(
+    cycle: Cycle, sampled: Sampled, drop: Float[Array, "*grid"] | None = None
+) -> Q[Float[Array, "*batch"], "K"]:
     """By how much a cycle's rise is above that at which its own flows would balance.
 
     It rises with the rise itself: warmer oil is thinner, rubs less and leaks more. Newton on it
     is safe where one on the heat is not, because both sides of that grow with the leakage.
     """
-    return rise_of(cycle) - balanced_rise(cycle, heat_flows(cycle, sampled(cycle)))
+    return rise_of(cycle) - balanced_rise(cycle, heat_flows(cycle, sampled(cycle), drop))
 
 
 def settled_rise(cycle: Cycle, sampled: Sampled) -> Q[Float[Array, "*batch"], "K"]:
     """The rise that balances the flows of a cycle while its pressure stays: it hardly knows."""
 
+    # What the oil loses takes the longest to work out, and stays with the pressure.
+    drop = leakage_drop(cycle, sampled(cycle))
+
     # A loop of this kind is one that the machine code of a batch knows, too.
     def improved(current: tuple[Array, Array]) -> tuple[Array, Array]:
         rise, count = current
         value, slope = jax.jvp(
-            lambda at: missed(warmed(cycle, at), sampled), (rise,), (jnp.ones_like(rise),)
+            lambda at: missed(warmed(cycle, at), sampled, drop), (rise,), (jnp.ones_like(rise),)
         )
         return rise - value / slope, count + 1
 

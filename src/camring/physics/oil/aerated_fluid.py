@@ -8,13 +8,23 @@ the usual homogeneous-mixture models (Merritt 1967, section 2-3; Yu, Chen and
 Lu 1994; Gholizadeh, Burton and Schoenau 2011).
 """
 
+from typing import Any
+
 import equinox as eqx
+import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jax.custom_derivatives import SymbolicZero
+from jaxtyping import Array, Bool, Float
 
 from camring.numerics.quantity import Q, real
 from camring.numerics.selection import bounded, smaller
-from camring.numerics.smooth import exponential_mean, logarithmic_mean
+from camring.numerics.smooth import (
+    exponential_mean,
+    inverse,
+    logarithmic_mean,
+    power,
+    stiffening_decay,
+)
 from camring.physics.oil.fluid import AbstractOil, OilAt, Pressure
 
 
@@ -72,27 +82,24 @@ class AeratedFluid(AbstractOil):
 
     def _gas(self, pressure: Pressure) -> Q[Float[Array, "*grid"], "1"]:
         """Volume of all air, were it free, over the liquid's at atmospheric pressure."""
-        # Without air the pressure may fall below zero, where no power is defined.
-        has_air = self.air_fraction > 0
-        held = jnp.where(has_air, pressure, self.atmospheric_pressure)
-        logarithm = jnp.log(held / self.atmospheric_pressure)
-        return self.air_ratio * jnp.exp(-logarithm / self.polytropic_index)
+        relative = self._held(pressure) / self.atmospheric_pressure
+        return self.air_ratio * power(relative, -1 / self.polytropic_index)
+
+    def _held(self, pressure: Pressure) -> Pressure:
+        """The pressure; without air it may fall below zero, where no power is defined."""
+        return jnp.where(self.air_fraction > 0, pressure, self.atmospheric_pressure)
 
     def _volume(
         self, pressure: Pressure
     ) -> tuple[Q[Float[Array, "*grid"], "1"], Q[Float[Array, "*grid"], "1/Pa"]]:
         """Volume over that of the liquid at atmospheric pressure, and minus its derivative."""
         strain = (pressure - self.atmospheric_pressure) / self.bulk_modulus
-        stiffening = self.modulus_gain * strain
-        liquid = jnp.exp(-strain * logarithmic_mean(stiffening))
+        liquid = stiffening_decay(strain, self.modulus_gain)
+        stiffer = inverse(1 + self.modulus_gain * strain)
         share, share_slope = self.undissolved(pressure)
         gas = self._gas(pressure)
-        held = jnp.where(self.air_fraction > 0, pressure, self.atmospheric_pressure)
-        shrinking = share / (self.polytropic_index * held) - share_slope
-        return (
-            gas * share + liquid,
-            gas * shrinking + liquid / (self.bulk_modulus * (1 + stiffening)),
-        )
+        shrinking = share / self.polytropic_index * inverse(self._held(pressure)) - share_slope
+        return gas * share + liquid, gas * shrinking + liquid * stiffer / self.bulk_modulus
 
     def density_at(self, pressure: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
         return self.mass / self._volume(pressure)[0]
@@ -106,8 +113,9 @@ class AeratedFluid(AbstractOil):
 
     def at(self, pressure: Pressure) -> OilAt:
         volume, shrinking = self._volume(pressure)
-        density = self.mass / volume
-        return OilAt(density, density, density * shrinking / volume)
+        share = inverse(volume)
+        density = self.mass * share
+        return OilAt(density, density, density * shrinking * share)
 
     def potential(self, pressure: Pressure) -> Float[Array, "*grid"]:
         """`h(P)`, the integral of dP/rho from atmospheric pressure, J/kg.
@@ -120,19 +128,19 @@ class AeratedFluid(AbstractOil):
         log_strain = strain * logarithmic_mean(gain * strain)
         liquid = self.bulk_modulus * log_strain * exponential_mean((gain - 1) * log_strain)
 
-        power = 1 - 1 / self.polytropic_index
+        flat = 1 - 1 / self.polytropic_index
         held = jnp.where(self.air_fraction > 0, pressure, p0)
         u = jnp.log(smaller(held, p0) / p0)
-        below = p0 * u * exponential_mean(power * u)
+        below = p0 * u * exponential_mean(flat * u)
 
         # Between p0 and pc the free share is a cubic in q = P/p0.
         top = jnp.log(bounded(held, p0, self.dissolution_pressure) / p0)
         span = self.dissolution_pressure / p0 - 1
         square, cube = 3 / span**2, 2 / span**3
         coefficients = (2 * square + 3 * cube, -square - 3 * cube, cube)
-        dissolving = (1 - square - cube) * top * exponential_mean(power * top)
+        dissolving = (1 - square - cube) * top * exponential_mean(flat * top)
         for order, coefficient in enumerate(coefficients, start=1):
-            exponent = power + order
+            exponent = flat + order
             dissolving = dissolving + coefficient * jnp.expm1(exponent * top) / exponent
         dissolving = p0 * dissolving
         return (liquid + self.air_ratio * (below + dissolving)) / self.mass
@@ -150,21 +158,56 @@ class AeratedFluid(AbstractOil):
         return self.atmospheric_pressure, self.dissolution_pressure
 
     def state(self, pressure: Pressure) -> Float[Array, "*grid"]:
-        has_air = self.air_fraction > 0
-        held = jnp.where(has_air, pressure, self.atmospheric_pressure)
-        free = jnp.where(has_air, self.air_ratio * self.atmospheric_pressure / held, 0)
-        return pressure / self.bulk_modulus - free
+        return pressure / self.bulk_modulus - self._free * inverse(self._held(pressure))
 
     def state_slope(self, pressure: Pressure) -> Float[Array, "*grid"]:
-        has_air = self.air_fraction > 0
-        held = jnp.where(has_air, pressure, self.atmospheric_pressure)
-        return 1 / self.bulk_modulus + self.air_ratio * self.atmospheric_pressure / held**2
+        each = inverse(self._held(pressure))
+        return 1 / self.bulk_modulus + self._free * each * each
 
     def pressure(self, state: Float[Array, "*grid"]) -> Pressure:
-        # The positive root of P^2/beta - state P - a p0 = 0, without cancellation.
-        air = 4 * self.air_ratio * self.atmospheric_pressure / self.bulk_modulus
-        has_air = self.air_fraction > 0
-        root = jnp.sqrt(state**2 + jnp.where(has_air, air, 1))
-        pulled = smaller(state, 0)
-        positive = jnp.where(state > 0, (state + root) / 2, air / (2 * (root - 2 * pulled + state)))
-        return self.bulk_modulus * jnp.where(has_air, positive, state)
+        return _pressure_of(state, self.bulk_modulus, self._free, self.air_fraction > 0)
+
+    @property
+    def _free(self) -> Pressure:
+        """`a p0`: what free air holds at any pressure times that pressure."""
+        return self.air_ratio * self.atmospheric_pressure
+
+
+@jax.custom_jvp
+def _pressure_of(
+    state: Float[Array, "*grid"],
+    bulk_modulus: Q[Float[Array, ""], "Pa"],
+    free: Q[Float[Array, ""], "Pa"],
+    has_air: Bool[Array, ""],
+) -> Pressure:
+    """The positive root of `P^2/beta - state P - free = 0`, without cancellation."""
+    return _pressure_and_root(state, bulk_modulus, free, has_air)[0]
+
+
+def _pressure_and_root(
+    state: Array, bulk_modulus: Array, free: Array, has_air: Array
+) -> tuple[Array, Array]:
+    air = 4 * free / bulk_modulus
+    root = jnp.sqrt(state**2 + jnp.where(has_air, air, 1))
+    further = root + jnp.abs(state)
+    positive = jnp.where(state > 0, further, air * inverse(further)) / 2
+    return bulk_modulus * jnp.where(has_air, positive, state), root
+
+
+def _pressure_slope(primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> tuple[Array, Array]:
+    """Of the equation itself: `root dP = P dstate + (P/beta)^2 dbeta + dfree`."""
+    found, root = _pressure_and_root(*primals)
+    along_state, along_modulus, along_free, _ = tangents
+    _, bulk_modulus, _, has_air = primals
+    slope = jnp.zeros_like(found)
+    if not isinstance(along_state, SymbolicZero):
+        slope = jnp.where(has_air, found * inverse(root), bulk_modulus) * along_state
+    if not isinstance(along_modulus, SymbolicZero):
+        share = found / bulk_modulus
+        slope = slope + jnp.where(has_air, share * share * inverse(root), share) * along_modulus
+    if not isinstance(along_free, SymbolicZero):
+        slope = slope + jnp.where(has_air, inverse(root), 0) * along_free
+    return found, slope
+
+
+_pressure_of.defjvp(_pressure_slope, symbolic_zeros=True)
