@@ -97,9 +97,7 @@ def main() -> None:
     laws = law_costs(given)
     print("\n| laws, processor time of one design | search | final | ratios |\n|---|---|---|---|")
     for name, values in laws.items():
-        ratios = ", ".join(
-            f"{laws_of / plain:.3g}" for laws_of, plain in zip(values, laws["plain"])
-        )
+        ratios = ", ".join(f"{each:.3g}" for each in np.divide(values, laws["plain"]))
         print(f"| {name} | {' | '.join(map(microseconds, values))} | {ratios} |")
 
     errors = accuracy(given, points[:64])

@@ -19,7 +19,7 @@ from camring.physics.heat.batch_simulation import simulate_batch
 from camring.physics.heat.simulation import neighbour
 from camring.physics.piston_state import quadrature_samples
 from camring.physics.resolution import Resolution
-from camring.physics.waveforms import waveforms
+from camring.physics.waves.waveforms import waveforms
 from camring.programs.batch_program import BatchProgram
 from camring.programs.compiled import simulate, summarise
 from camring.reference import independent_results

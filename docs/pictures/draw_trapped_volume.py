@@ -15,7 +15,7 @@ from camring.files.motor import read_motor_file
 from camring.physics.heat.simulation import simulate
 from camring.physics.motor import Motor
 from camring.physics.oil.fluid import ConstantFluid
-from camring.physics.waveforms import waveforms
+from camring.physics.waves.waveforms import waveforms
 
 HERE = Path(__file__).parent
 MOTOR = HERE.parent.parent / "tests" / "published" / "data" / "mid_aerated.toml"

@@ -10,8 +10,8 @@ from camring.analyses.oil_use import unread_viscosity
 from camring.files.motor import parse_motor_file
 from camring.files.motor.laws import SLOTS, laws_of
 from camring.physics.chamber import Chamber
+from camring.physics.oil.viscosity_use import reads_viscosity
 from camring.physics.pressure import port_flows
-from camring.physics.viscosity_use import reads_viscosity
 
 OIL = without_table("[fluid]") + '\n[fluid]\noil = "ISO VG 46"\ntemperature = "50 degC"\n'
 GAP = ("[motor.gap]", 'clearance = "15 um"\nlength = "30 mm"')

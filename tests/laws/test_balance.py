@@ -13,7 +13,7 @@ from motors import STRUCTURES, sound_case
 from camring.metrics.power_balance import power_balance
 from camring.physics.piston_state import quadrature_samples
 from camring.physics.torque import torque_by_contact, torque_by_virtual_work
-from camring.physics.waveforms import shaft_torque, waveforms
+from camring.physics.waves.waveforms import shaft_torque, waveforms
 from camring.reference import machine_of, solve_machine
 
 COUNT = 8  # motors in the batch that every test below looks at

@@ -16,9 +16,9 @@ from camring.physics.heat.simulation import neighbour
 from camring.physics.manifold.coupling import line_flow
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.piston_state import quadrature_samples
-from camring.physics.port_waves import port_waves
 from camring.physics.rotation import turned
-from camring.physics.waveforms import waveforms
+from camring.physics.waves.port_waves import port_waves
+from camring.physics.waves.waveforms import waveforms
 from camring.programs.compiled import summarise
 from camring.reference import independent_results
 

@@ -9,7 +9,7 @@ from camring.files.motor.document import at_temperature
 from camring.files.motor.motor_file import validated
 from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.oil.presets import OILS
-from camring.physics.viscosity_use import reads_viscosity
+from camring.physics.oil.viscosity_use import reads_viscosity
 
 __all__ = ["oils_at", "require_oil", "unread_viscosity"]
 

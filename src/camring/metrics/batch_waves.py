@@ -15,11 +15,11 @@ from camring.physics.heat.collocation import at_collocation_points
 from camring.physics.motor import Motor
 from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.operating_point import OperatingPoint
-from camring.physics.port_waves import of_one_piston
+from camring.physics.waves.port_waves import of_one_piston
 
 
 class Shown(NamedTuple):
-    """Torque, supply, return and case flow (`physics.port_waves`) of all pistons together."""
+    """Torque, supply, return and case flow (`physics.waves.port_waves`) of all pistons together."""
 
     means: Float[Array, "4 batch"]
     waves: Float[Array, "4 angle batch"]

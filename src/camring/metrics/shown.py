@@ -11,7 +11,7 @@ from camring.metrics.spectrum import order_spectrum
 from camring.metrics.summary import Metrics, summarise
 from camring.physics.cycle import Cycle
 from camring.physics.piston_state import sample_angles
-from camring.physics.waveforms import sum_over_pistons
+from camring.physics.waves.waveforms import sum_over_pistons
 
 METRICS = tuple(each.name for each in fields(Metrics))
 

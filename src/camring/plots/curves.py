@@ -16,7 +16,7 @@ from camring.plots.style import as_written, drawing_board, line, sheet, styled
 
 if TYPE_CHECKING:
     from camring.physics.cycle import Cycle
-    from camring.physics.waveforms import Waveforms
+    from camring.physics.waves.waveforms import Waveforms
 
 SAMPLES = 1441
 HEARD_MULTIPLES = 8  # of the surviving order, in a spectrum

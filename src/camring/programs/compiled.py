@@ -28,7 +28,6 @@ from camring.objective.slopes import (
     result_slopes,
     results_used,
 )
-from camring.physics import waveforms as sampling
 from camring.physics.cycle import Cycle
 from camring.physics.heat import simulation
 from camring.physics.motor import Motor
@@ -37,6 +36,7 @@ from camring.physics.operating_point import OperatingPoint
 from camring.physics.resolution import Resolution
 from camring.physics.rotation import turned
 from camring.physics.system import System
+from camring.physics.waves import waveforms as sampling
 from camring.programs.motor_program import motor_program, named
 
 # `camring.api` offers these to `import camring`.

@@ -25,10 +25,12 @@ from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.system import System
 from camring.reference import NoSecondSolver, NotStarShapedError, OrbitError
 from camring.studies.envelope_grid import BOTH_WAYS, ONE_WAY, usual_envelope
-from camring.studies.second_solver import SecondSolver
+from camring.studies.second_solver import SecondSolver, all_results
 
 SECOND_TOLERANCE = 1e-5
-"""Of the second solver here: its results are then good to 1e-6, limits are kept by 3e-3."""
+"""Of the second solver here; limits are kept by 3e-3, by a motor that a search has moved."""
+SECOND_ACCURACY = 1e-6
+"""What its results are then good to: a motor that is held against itself misses by as much."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +192,8 @@ def _worst_limit(
 ) -> tuple[str, float]:
     """The limit with the least margin by the second solver's results at one point."""
     ours = {name: values[place] for name, values in vars(check.motors[-1].metrics).items()}
-    metrics = Metrics(**{name: jnp.asarray(v) for name, v in {**ours, **results}.items()})
+    both = all_results(ours, results)
+    metrics = Metrics(**{name: jnp.asarray(value) for name, value in both.items()})
     here = System(
         system.motor, _fluid_at(check, system, place), (check.grid.operating_point(place),)
     )
@@ -202,5 +205,5 @@ def _worst_limit(
         name: float(np.ravel(values)[place if np.size(values) > 1 else 0])
         for name, values in _that_vary(goal.limits(alone)).items()
     }
-    name = max(worst, key=lambda each: worst[each])
+    name = max(worst, key=lambda each: np.nan_to_num(worst[each], nan=np.inf))
     return name, worst[name]

@@ -27,9 +27,9 @@ from camring.objective.objective import assessment_of
 from camring.physics.resolution import Resolution
 from camring.programs.compiled import assess
 from camring.reference import NoSecondSolver, NotStarShapedError, OrbitError, machine_of
-from camring.studies.envelope_check import EnvelopeCheck
+from camring.studies.envelope_check import SECOND_ACCURACY, EnvelopeCheck
 from camring.studies.envelope_words import document_of, range_in_words
-from camring.studies.second_solver import SecondSolver
+from camring.studies.second_solver import SecondSolver, all_results
 
 FINER, INDEPENDENT, SEARCH = "finer", "independent", "search"
 EYES = {FINER: "at finer resolution", INDEPENDENT: "by SciPy's stiff solver"}
@@ -122,10 +122,9 @@ def begin_again(motor_file: MotorFile, second: SecondSolver) -> Callable[[], dic
             results = [each.result() for each in pending]
         except (NoSecondSolver, OrbitError, NotStarShapedError) as error:
             return {FINER: finer, INDEPENDENT: failed(str(error))}
-        # What the other solver does not compute (the lift's ends) is geometry alone.
-        whole = [{**dict(a), **b} for a, b in zip(finer.results, results, strict=True)]
         metrics = tuple(
-            Metrics(**{name: jnp.asarray(value) for name, value in each.items()}) for each in whole
+            Metrics(**{name: jnp.asarray(each) for name, each in all_results(a, b).items()})
+            for a, b in zip(finer.results, results, strict=True)
         )
         sound = jnp.zeros(len(metrics), int)
         independent = outcome_of(assessment_of(system, goal, metrics, sound))
@@ -237,7 +236,11 @@ def envelope_checks(found: EnvelopeCheck) -> list[Check]:
         return [*checks, Check(by, False, found.failure)]
     for place, (name, g) in found.second.items():
         checks.append(
-            Check(f"{by} at {grid.text(place)}", g <= 0, f"least margin {-g:.4g}, of {name}")
+            Check(
+                f"{by} at {grid.text(place)}",
+                g <= SECOND_ACCURACY,
+                f"least margin {-g:.4g}, of {name}",
+            )
         )
     return checks
 

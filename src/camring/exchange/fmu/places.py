@@ -17,7 +17,7 @@ from camring.physics.motor import Motor
 from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.piston_state import quadrature_samples
-from camring.physics.port_waves import of_one_piston, port_waves
+from camring.physics.waves.port_waves import of_one_piston, port_waves
 from camring.programs.batch_program import BatchProgram
 from camring.programs.compiled import simulate_compiled
 from camring.programs.motor_program import motor_program

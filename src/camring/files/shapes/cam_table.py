@@ -1,7 +1,7 @@
 """A table of angle and lift or radius, or of x and y, with units in its header.
 
 CSV or the first sheet of a workbook, as benches and spreadsheets write them
-(`measured_cells.py`, `measured_numbers.py`). `ring_points.csv` of `camring
+(`files/cells`). `ring_points.csv` of `camring
 export` is such a table, with columns of both curves.
 """
 

@@ -1,9 +1,9 @@
 """Measured torque, flow, efficiency as a table that a test bench or a spreadsheet wrote.
 
-A header names columns with their units (`measured_columns.py`), which may stand in a row of
+A header names columns with their units (`columns.py`), which may stand in a row of
 their own; title lines may be above it. Each row below is one operating point. Commas,
-semicolons or tabs separate (`measured_cells.py`), numbers have decimal points or commas
-(`measured_numbers.py`). Lines that begin with `#` are remarks.
+semicolons or tabs separate, numbers have decimal points or commas (`files/cells`). Lines that
+begin with `#` are remarks.
 """
 
 from collections.abc import Mapping, Sequence
