@@ -29,7 +29,7 @@ from camring.programs.compiled import assess
 from camring.reference import NoSecondSolver, NotStarShapedError, OrbitError, machine_of
 from camring.studies.envelope_check import SECOND_ACCURACY, EnvelopeCheck
 from camring.studies.envelope_words import document_of, range_in_words
-from camring.studies.second_solver import SecondSolver, all_results
+from camring.studies.second_solver import GEOMETRY_ALONE, SecondSolver, all_results
 
 FINER, INDEPENDENT, SEARCH = "finer", "independent", "search"
 EYES = {FINER: "at finer resolution", INDEPENDENT: "by SciPy's stiff solver"}
@@ -128,7 +128,11 @@ def begin_again(motor_file: MotorFile, second: SecondSolver) -> Callable[[], dic
         )
         sound = jnp.zeros(len(metrics), int)
         independent = outcome_of(assessment_of(system, goal, metrics, sound))
-        return {FINER: finer, INDEPENDENT: independent}
+        own = tuple(
+            {name: each[name] for name in each if name in (*found, *GEOMETRY_ALONE)}
+            for each, found in zip(independent.results, results, strict=True)
+        )
+        return {FINER: finer, INDEPENDENT: replace(independent, results=own)}
 
     return seen
 
