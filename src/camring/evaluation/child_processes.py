@@ -61,6 +61,13 @@ def tied(group: int) -> Iterator[None]:
         untie(group)
 
 
+def begin_to_keep() -> None:
+    """Before a program is started: if this process ends before it has tied the program's group, the
+    word in its environment is all that it is known by, and somebody must be there who looks for it.
+    """
+    _keeper.begin()
+
+
 def tie(group: int) -> None:
     """From now on the end of this process is that of a group of processes."""
     _keeper.tell("tie", group)
@@ -108,6 +115,14 @@ class _Keeper:
         with self._lock:
             return [group for group, tied_by in self._groups.items() if tied_by == thread]
 
+    def begin(self) -> None:
+        with self._lock:
+            if not self._lives():
+                self._start()
+
+    def _lives(self) -> bool:
+        return self._process is not None and self._process.poll() is None
+
     def tell(self, word: str, group: int) -> None:
         with self._lock:
             if word == "tie":
@@ -115,7 +130,7 @@ class _Keeper:
             else:
                 self._groups.pop(group, None)
             lines = [f"{word} {group}\n"]
-            if self._process is None or self._process.poll() is not None:
+            if not self._lives():
                 self._start()
                 lines = [f"tie {each}\n" for each in self._groups]
             assert self._process is not None

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import IO
 
-from camring.evaluation.child_processes import environment_with, new_mark, tied
+from camring.evaluation.child_processes import begin_to_keep, environment_with, new_mark, tied
 from camring.evaluation.keeper import end_group, end_marked
 
 __all__ = ["LONGEST_ANSWER", "CommandFailed", "Ended", "run"]
@@ -58,6 +58,7 @@ def run(words: Sequence[str], folder: str, question: bytes, timeout: float) -> E
         When it cannot be started, prints more than `LONGEST_ANSWER`, or is not done in time.
     """
     mark = new_mark()
+    begin_to_keep()
     try:
         process = subprocess.Popen(
             list(words),
