@@ -81,7 +81,7 @@ def test_a_kill_leaves_no_program_behind_on_a_cluster(tmp_path, address):
     finally:
         process.kill()
         process.wait()
-    wait_for(lambda: not lives(staying), patience=20)
+    wait_for(lambda: not lives(staying))
 
 
 def test_a_study_stops_in_a_sentence_when_the_scheduler_is_gone(tmp_path):

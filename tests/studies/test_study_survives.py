@@ -101,7 +101,7 @@ def test_ctrl_c_stops_within_a_second_and_loses_nothing(tmp_path, uninterrupted)
     time.sleep(1.0)
     began = time.monotonic()
     process.send_signal(signal.SIGINT)
-    assert process.wait(timeout=5) == 130
+    assert process.wait(timeout=120) == 130
     assert time.monotonic() - began < 1.0
     assert "Traceback" not in process.stderr.read()
     fake_study.run(folder, BUDGET)
@@ -114,7 +114,7 @@ def test_ctrl_c_stops_workers_too(tmp_path):
     process = start(folder, workers=2, seconds=0.02, start_new_session=True)
     wait_for_evaluations(folder, 3, process)
     os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=60)
+    _, said = process.communicate(timeout=300)
     assert process.returncode == 130
     assert "Traceback" not in said
 
@@ -129,7 +129,7 @@ def test_a_file_size_limit_stops_the_study_in_a_sentence(tmp_path, uninterrupted
         folder,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
     )
-    _, said = process.communicate(timeout=60)
+    _, said = process.communicate(timeout=300)
     assert process.returncode == 1
     assert "takes no more" in said
     assert "Traceback" not in said
@@ -150,7 +150,7 @@ def test_a_full_disk_stops_the_study_in_a_sentence(tmp_path, uninterrupted):
     try:
         folder = disk / "study"
         process = start(folder, seconds=0, budget=400)
-        _, said = process.communicate(timeout=120)
+        _, said = process.communicate(timeout=300)
         assert process.returncode == 1, said
         assert "takes no more" in said
         kept, _ = fake_study.sequence(folder)
@@ -167,7 +167,7 @@ def test_the_lock_dies_with_its_process(tmp_path):
     process = start(folder, seconds=0.05)
     wait_for_evaluations(folder, 1, process)
     second = start(folder)
-    _, said = second.communicate(timeout=60)
+    _, said = second.communicate(timeout=300)
     assert second.returncode == 2
     assert f"is in use by process {process.pid}" in said
     process.kill()

@@ -115,7 +115,7 @@ def test_what_goes_to_the_background_ends_with_its_evaluation(tmp_path, then):
     else:
         program = UserCommand(program.words, 2.0, ".")
         reason_of(program)
-    wait_for(lambda: not lives((tmp_path / "child").read_text()), patience=10)
+    wait_for(lambda: not lives((tmp_path / "child").read_text()))
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="processes are found in /proc")
@@ -141,4 +141,4 @@ def test_what_a_function_has_started_ends_with_its_time(tmp_path):
     process = UserProcess(start_and_stay, 5.0)
     with pytest.raises(FunctionFailed, match="longer than 5 s"):
         process(str(tmp_path / "child"))
-    wait_for(lambda: not lives((tmp_path / "child").read_text()), patience=10)
+    wait_for(lambda: not lives((tmp_path / "child").read_text()))
