@@ -61,5 +61,5 @@ def test_an_interruption_does_not_wait_for_the_evaluation():
     with Interruption() as interruption:
         threading.Timer(0.2, functools.partial(os.kill, os.getpid(), 2)).start()
         with pytest.raises(Interrupted):
-            interruption.run(executor, time.sleep, 3)
-    assert time.monotonic() - began < 1.0
+            interruption.run(executor, time.sleep, 60)
+    assert time.monotonic() - began < 30

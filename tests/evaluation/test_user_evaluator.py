@@ -266,7 +266,7 @@ def test_validation_asks_the_program_again_and_says_so(study):
 
 
 def test_a_noisy_program_is_found_out(motor):
-    from camring.studies.second_solver import SecondSolver
+    from camring.studies.reference_processes import SecondSolver
     from camring.studies.validation import BEST, GIVEN, solve_again, validate
 
     motor_file, _, ours = motor

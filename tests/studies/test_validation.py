@@ -10,7 +10,7 @@ import pytest
 import camring
 from camring.evaluation.outcome import EnvelopeNumbers, Outcome, failed
 from camring.studies import validation
-from camring.studies.second_solver import SecondSolver
+from camring.studies.reference_processes import SecondSolver
 from camring.studies.validation import (
     BEST,
     EYES,

@@ -2,7 +2,7 @@
 
 It begins without JAX and ends with the process that started it, whose end closes the pipe, in
 the middle of a machine too. `python -m camring.reference.child` starts it;
-`camring.studies.second_solver` speaks to it.
+`camring.studies.reference_processes` speaks to it.
 """
 
 import os

@@ -25,7 +25,7 @@ from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.system import System
 from camring.reference import NoSecondSolver, NotStarShapedError, OrbitError
 from camring.studies.envelope_grid import BOTH_WAYS, ONE_WAY, usual_envelope
-from camring.studies.second_solver import SecondSolver, all_results
+from camring.studies.reference_processes import SecondSolver, all_results
 
 SECOND_TOLERANCE = 1e-5
 """Of the second solver here; limits are kept by 3e-3, by a motor that a search has moved."""

@@ -22,7 +22,7 @@ from camring.search.pareto.front import Front, FrontProblem, trace_front
 from camring.search.sampling import generator, sobol
 from camring.studies.envelope_check import check_envelope
 from camring.studies.objectives import SENSES, Traded
-from camring.studies.second_solver import SecondSolver
+from camring.studies.reference_processes import SecondSolver
 from camring.studies.validation import INDEPENDENT, begin_again, without_second_solver
 
 Point: TypeAlias = Float[np.ndarray, " dimension"]

@@ -29,7 +29,7 @@ from camring.programs.compiled import assess
 from camring.reference import NoSecondSolver, NotStarShapedError, OrbitError, machine_of
 from camring.studies.envelope_check import SECOND_ACCURACY, EnvelopeCheck
 from camring.studies.envelope_words import document_of, range_in_words
-from camring.studies.second_solver import GEOMETRY_ALONE, SecondSolver, all_results
+from camring.studies.reference_processes import GEOMETRY_ALONE, SecondSolver, all_results
 
 FINER, INDEPENDENT, SEARCH = "finer", "independent", "search"
 EYES = {FINER: "at finer resolution", INDEPENDENT: "by SciPy's stiff solver"}

@@ -13,7 +13,7 @@ from camring.report import write_report
 from camring.report.study_motors import StudyMotors, study_motors
 from camring.studies.envelope_check import begin_check
 from camring.studies.given_up import given_up
-from camring.studies.second_solver import SecondSolver
+from camring.studies.reference_processes import SecondSolver
 from camring.studies.study_folder import FOUND_BY, StudyFolder
 from camring.studies.validation import (
     BEST,

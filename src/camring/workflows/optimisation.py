@@ -28,7 +28,7 @@ from camring.files.motor.document import decode, printable, read_text
 from camring.files.motor.goal_tables import BAYESIAN, GRADIENT
 from camring.presentation.study import Finished
 from camring.studies.coordinator import Search, Watcher, search
-from camring.studies.second_solver import SecondSolver
+from camring.studies.reference_processes import SecondSolver
 from camring.studies.study_choices import command_of, method_of
 from camring.studies.study_folder import StudyFolder, require_vacant, unwritable
 from camring.studies.validation import solve_again, without_second_solver

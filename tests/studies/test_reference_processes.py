@@ -9,8 +9,8 @@ import pytest
 from motors import STRUCTURES, sound_case
 
 from camring.reference import OrbitError, independent_results, machine_of
-from camring.studies import second_solver
-from camring.studies.second_solver import COMMAND, SecondSolver
+from camring.studies import reference_processes
+from camring.studies.reference_processes import COMMAND, SecondSolver
 
 CASE = sound_case(0, STRUCTURES[0])
 HARMONICS, TOLERANCE = 60, 1e-5
@@ -33,7 +33,7 @@ def test_what_it_cannot_be_sent_is_solved_here(here, monkeypatch):
         machine = machine_of(*nouns)
         return replace(machine, user_leakage=lambda inside, outside: 0.0)
 
-    monkeypatch.setattr(second_solver, "machine_of", with_a_law_of_its_own)
+    monkeypatch.setattr(reference_processes, "machine_of", with_a_law_of_its_own)
     with SecondSolver() as second:
         assert second.begin(*CASE, HARMONICS, TOLERANCE).result() == here
         assert all(each.process is None for each in second.children)
@@ -52,8 +52,10 @@ def test_one_that_dies_or_cannot_begin_costs_time_alone(here, monkeypatch):
 def test_a_motor_without_a_periodic_pressure_is_said_to_have_none(monkeypatch):
     """The sentence comes from the process, not from a second attempt here."""
     machine = replace(machine_of(*CASE), leakage_coefficient=0.0, port_area=0.0)
-    monkeypatch.setattr(second_solver, "machine_of", lambda *nouns: machine)
-    monkeypatch.setattr(second_solver, "independent_results", lambda *rest: pytest.fail("here"))
+    monkeypatch.setattr(reference_processes, "machine_of", lambda *nouns: machine)
+    monkeypatch.setattr(
+        reference_processes, "independent_results", lambda *rest: pytest.fail("here")
+    )
     with SecondSolver() as second, pytest.raises(OrbitError, match="neither leaks"):
         second.begin(*CASE, HARMONICS, TOLERANCE).result()
 
