@@ -255,7 +255,9 @@ def main() -> None:
         print(written(kind.name, found[kind.name]), flush=True)
     RESULTS.mkdir(exist_ok=True)
     name = "accuracy_batch.json" if asked.batch else "accuracy.json"
-    (RESULTS / name).write_text(json.dumps(found, indent=1) + "\n")
+    path = RESULTS / name  # kinds that were not asked for stay as they are
+    kept = json.loads(path.read_text()) if path.exists() else {}
+    path.write_text(json.dumps({**kept, **found}, indent=1) + "\n")
 
 
 if __name__ == "__main__":
