@@ -128,10 +128,10 @@ def begin_again(motor_file: MotorFile, second: SecondSolver) -> Callable[[], dic
         )
         sound = jnp.zeros(len(metrics), int)
         independent = outcome_of(assessment_of(system, goal, metrics, sound))
-        own = tuple(
+        own = [
             {name: each[name] for name in each if name in (*found, *GEOMETRY_ALONE)}
             for each, found in zip(independent.results, results, strict=True)
-        )
+        ]
         return {FINER: finer, INDEPENDENT: replace(independent, results=own)}
 
     return seen

@@ -162,10 +162,16 @@ def overlaid(
     used = set(results_used(goal))
     if ours.failure and not all(used <= after.keys() for after in given):
         return replace(ours, failure=f"our simulation: {ours.failure}")
-    metrics = tuple(Metrics(**{name: jnp.asarray(each[name]) for name in NAMES}) for each in whole)
+    metrics = tuple(
+        Metrics(**{name: jnp.asarray(each.get(name, math.nan)) for name in NAMES}) for each in whole
+    )
     assessed = outcome_of(assess_metrics(system, goal, metrics), design=dict(ours.design))
+    known = [
+        {name: value for name, value in each.items() if name in there}
+        for each, there in zip(assessed.results, whole, strict=True)
+    ]
     approximation = math.nan if ours.failure else ours.physical_objective
-    return replace(assessed, approximation=approximation)
+    return replace(assessed, results=known, approximation=approximation)
 
 
 def names_given(given: Sequence[Mapping[str, float]]) -> list[str]:
