@@ -69,7 +69,7 @@ if __name__ == "__main__":
 )
 def test_a_kill_leaves_no_evaluation_behind(tmp_path, kind):
     if kind == UNKNOWN and not PROCESSES.exists():
-        pytest.skip("the system does not tell of its processes")
+        pytest.skip("only /proc says what a process has in its environment")
     (tmp_path / "staying.py").write_text(MODEL)
     (tmp_path / "program.py").write_text(PROGRAM)
     process = subprocess.Popen([sys.executable, "program.py", kind], cwd=tmp_path)

@@ -1,6 +1,7 @@
 """Validated is said only when every limit, gain and result holds through both other eyes."""
 
 import json
+from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +10,9 @@ import pytest
 
 import camring
 from camring.evaluation.outcome import EnvelopeNumbers, Outcome, failed
+from camring.reference import independent_results
 from camring.studies import validation
+from camring.studies.envelope_check import begin_check
 from camring.studies.reference_processes import SecondSolver
 from camring.studies.validation import (
     BEST,
@@ -184,3 +187,55 @@ def test_other_eyes_count_the_share_that_an_envelope_has_in_the_objective():
         0, GIVEN, BEST, {GIVEN: claimed, BEST: claimed}, {GIVEN: seen, BEST: seen}
     ).views[BEST][FINER]
     assert found["objective"] == found["physical_objective"] == pytest.approx(0.63)
+
+
+class Changed(SecondSolver):
+    """A second solver whose results are changed before they are seen."""
+
+    def __init__(self, change):
+        self.change = change
+        super().__init__()
+
+    def begin(self, *asked):
+        answer = Future()
+        answer.set_result(self.change(independent_results(*asked)))
+        return answer
+
+
+def test_a_limit_on_what_the_second_solver_does_not_compute_is_not_validated():
+    motor_file = camring.read_motor_file(EXAMPLE)
+    assert motor_file.goal.constraints.max_contact_stress is not None
+    from camring.evaluation.evaluator import assess_file
+
+    claimed = assess_file(motor_file)
+
+    def half(results):
+        return {n: v for n, v in results.items() if n != "max_contact_stress"}
+
+    with Changed(half) as second:
+        seen = solve_again(motor_file, second)
+    both = {GIVEN: seen, BEST: seen}
+    found = validate(0, motor_file, motor_file, {GIVEN: claimed, BEST: claimed}, both)
+    assert not found.validated
+    assert "by SciPy's stiff solver" in found.sentence
+    assert "no finite number for max contact stress" in found.sentence
+    assert "max_contact_stress" not in seen[INDEPENDENT].results[0]
+
+
+def test_a_motor_beside_itself_loses_nothing_by_the_second_solvers_rounding():
+    """Another one is held to the given motor's ripple by either solver."""
+    given = camring.read_motor_file(EXAMPLE.with_name("wheel_motor.toml"))
+    shift = given.system.motor.valve_plate.shift
+    other = replace(
+        given, system=eqx.tree_at(lambda s: s.motor.valve_plate.shift, given.system, shift + 1e-4)
+    )
+
+    def louder(results):
+        return {**results, "torque_ripple": 2 * results["torque_ripple"]}
+
+    with Changed(louder) as second:
+        itself, beside = (begin_check(given, best, second)() for best in (given, other))
+    for check, wanted in ((itself, False), (beside, True)):
+        assert len(check.second) >= 8
+        assert ("max_ripple_ratio" in {name for name, _ in check.second.values()}) is wanted
+        assert any(g > 0 for _, g in check.second.values()) is wanted

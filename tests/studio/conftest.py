@@ -85,7 +85,7 @@ def answered(page, words):
 
 
 def at_rest(page):
-    """Waits until the server has all that was done on a page, that the next one is not told it."""
+    """Waits until the server has all that was done on a page: nothing is left for the next one."""
     page.keyboard.press(
         "Control"
     )  # arrow keys are kept once they rest, or at once before a command

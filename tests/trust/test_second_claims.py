@@ -9,7 +9,7 @@ from motors import sound_case
 from camring.metrics.summary import Metrics
 from camring.objective.constraints import BANDS, LOWER_LIMITS, UPPER_LIMITS
 from camring.reference import independent_results
-from camring.studies.reference_processes import GEOMETRY_ALONE, all_results
+from camring.studies.reference_results import GEOMETRY_ALONE, all_results
 
 
 @pytest.fixture(scope="module")

@@ -1,8 +1,8 @@
 """What is said of one design, in plain numbers that travel between processes and into files."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 Numbers = Mapping[str, float]
@@ -100,6 +100,14 @@ class Outcome:
     design: Mapping[str, float | Sequence[float]] = field(default_factory=dict)
     failure: str | None = None
     envelope: EnvelopeNumbers | None = None
+
+    def with_results_in(self, known: Sequence[Collection[str]]) -> "Outcome":
+        """Without the results that nobody has computed, given the names of the others."""
+        results = [
+            {name: value for name, value in each.items() if name in names}
+            for each, names in zip(self.results, known, strict=True)
+        ]
+        return replace(self, results=results)
 
 
 def failed(reason: str, constraints: Sequence[str] = ()) -> Outcome:

@@ -19,8 +19,7 @@ from camring.metrics.error_estimate import (
 )
 from camring.metrics.summary import Metrics
 from camring.numerics.verdict import Fault
-from camring.physics.cycle import Cycle
-from camring.physics.manifold.sides import sides_of
+from camring.physics.cycle import Cycle, meshed
 from camring.physics.resolution import Resolution
 
 
@@ -45,8 +44,7 @@ class Accurate(NamedTuple):
     @property
     def elements(self) -> int:
         """Of a lobe pitch, in the mesh of the cycle."""
-        behind = sides_of(self.cycle.motor)
-        return (self.resolution.behind_manifolds() if behind else self.resolution).elements
+        return meshed(self.cycle.motor, self.resolution).elements
 
     @property
     def relative_errors(self) -> dict[str, float]:

@@ -6,12 +6,13 @@ is lost: on some processors, in some programs, for some of the samples. Here the
 asks which number is larger, and a number that misses the largest by rounding counts as it.
 """
 
-from typing import Any
+from collections.abc import Callable
+from functools import partial
 
 import jax
 import jax.numpy as jnp
 from jax.typing import ArrayLike
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
 _SAME = 1e-9
 """Of the range of the numbers: what is nearer to the largest counts as the largest."""
@@ -58,48 +59,41 @@ def _alike(one: ArrayLike, other: ArrayLike) -> tuple[Array, Array]:
     return jnp.asarray(one, kind), jnp.asarray(other, kind)
 
 
-@jax.custom_jvp
-def _larger(one: Array, other: Array) -> Array:
-    return jnp.maximum(one, other)
+def _selection(
+    choose: Callable[[Array, Array], Array], goes_first: Callable[[Array, Array], Array]
+) -> Callable[[Array, Array], Array]:
+    """One of two numbers, whose slope is that of the one that goes first."""
 
-
-@jax.custom_jvp
-def _smaller(one: Array, other: Array) -> Array:
-    return jnp.minimum(one, other)
-
-
-def _chosen(
-    first: Bool[Array, "*grid"], second: Bool[Array, "*grid"], slopes: tuple[Any, ...]
-) -> Array:
-    one, other = slopes
-    return jnp.where(first, one, jnp.where(second, other, (one + other) / 2))
-
-
-@_larger.defjvp
-def _larger_slope(numbers: tuple[Any, ...], slopes: tuple[Any, ...]) -> tuple[Array, Array]:
-    one, other = numbers
-    return _larger(one, other), _chosen(one > other, other > one, slopes)
-
-
-@_smaller.defjvp
-def _smaller_slope(numbers: tuple[Any, ...], slopes: tuple[Any, ...]) -> tuple[Array, Array]:
-    one, other = numbers
-    return _smaller(one, other), _chosen(one < other, other < one, slopes)
-
-
-def _largest(values: Float[Array, "*grid"], axis: int | tuple[int, ...] | None) -> Array:
     @jax.custom_jvp
-    def found(values: Array) -> Array:
-        return jnp.max(values, axis=axis)
+    def chosen(one: Array, other: Array) -> Array:
+        return choose(one, other)
 
-    @found.defjvp
-    def slope(numbers: tuple[Any, ...], slopes: tuple[Any, ...]) -> tuple[Array, Array]:
-        (values,), (slopes_of_all,) = numbers, slopes
-        top = jnp.max(values, axis=axis, keepdims=True)
-        span = top - jnp.min(values, axis=axis, keepdims=True)
-        near = jnp.where(jnp.isfinite(span), _SAME * span, 0) + _ROUNDING * jnp.abs(top)
-        counted = (values >= top - near) | (values == top)
-        total = jnp.sum(jnp.where(counted, slopes_of_all, 0), axis=axis)
-        return found(values), total / jnp.sum(counted, axis=axis)
+    @chosen.defjvp
+    def slope(numbers: tuple[Array, Array], slopes: tuple[Array, Array]) -> tuple[Array, Array]:
+        (one, other), (along_one, along_other) = numbers, slopes
+        of_equal = jnp.where(goes_first(other, one), along_other, (along_one + along_other) / 2)
+        return chosen(one, other), jnp.where(goes_first(one, other), along_one, of_equal)
 
-    return found(values)
+    return chosen
+
+
+_larger = _selection(jnp.maximum, jnp.greater)
+_smaller = _selection(jnp.minimum, jnp.less)
+
+
+@partial(jax.custom_jvp, nondiff_argnums=(1,))
+def _largest(values: Float[Array, "*grid"], axis: int | tuple[int, ...] | None) -> Array:
+    return jnp.max(values, axis=axis)
+
+
+@_largest.defjvp
+def _largest_slope(
+    axis: int | tuple[int, ...] | None, numbers: tuple[Array], slopes: tuple[Array]
+) -> tuple[Array, Array]:
+    (values,), (along,) = numbers, slopes
+    top = jnp.max(values, axis=axis, keepdims=True)
+    span = top - jnp.min(values, axis=axis, keepdims=True)
+    near = jnp.where(jnp.isfinite(span), _SAME * span, 0) + _ROUNDING * jnp.abs(top)
+    counted = (values >= top - near) | (values == top)
+    total = jnp.sum(jnp.where(counted, along, 0), axis=axis)
+    return _largest(values, axis), total / jnp.sum(counted, axis=axis)

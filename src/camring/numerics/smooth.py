@@ -1,5 +1,6 @@
 """Functions with a removable singularity, smooth and differentiable through it."""
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import jax
@@ -45,6 +46,21 @@ def tanh_ratio(squared: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
     return jnp.where(near, series, jnp.tanh(root) / root)
 
 
+def along(
+    found: Float[Array, "*grid"], tangents: Sequence[Any], *slopes: Callable[[], Array]
+) -> Float[Array, "*grid"]:
+    """Derivative of a function's value: of each argument that moves its slope times how it does.
+
+    Slopes of the others are not worked out.
+    """
+    parts = [
+        slope() * tangent
+        for slope, tangent in zip(slopes, tangents, strict=True)
+        if not isinstance(tangent, SymbolicZero)
+    ]
+    return jnp.broadcast_to(sum(parts[1:], parts[0]), found.shape)
+
+
 @jax.custom_jvp
 def inverse(x: Float[Array, "*grid"]) -> Float[Array, "*grid"]:
     """`1/x`; value and slope share the division."""
@@ -76,14 +92,10 @@ def power(x: Float[Array, "*grid"], exponent: Float[Array, ""]) -> Float[Array, 
 
 
 def _power_slope(primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> tuple[Array, Array]:
-    (x, exponent), (along, along_exponent) = primals, tangents
+    x, exponent = primals
     found = power(x, exponent)
-    slope = jnp.zeros_like(found)
-    if not isinstance(along, SymbolicZero):
-        slope = found * exponent * inverse(x) * along
-    if not isinstance(along_exponent, SymbolicZero):
-        slope = slope + found * jnp.log(x) * along_exponent
-    return found, slope
+    by_x, by_exponent = lambda: found * exponent * inverse(x), lambda: found * jnp.log(x)
+    return found, along(found, tangents, by_x, by_exponent)
 
 
 power.defjvp(_power_slope, symbolic_zeros=True)
@@ -98,15 +110,14 @@ def stiffening_decay(
 
 
 def _decay_slope(primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> tuple[Array, Array]:
-    (strain, gain), (along, along_gain) = primals, tangents
+    strain, gain = primals
     found = stiffening_decay(strain, gain)
-    slope = jnp.zeros_like(found)
-    if not isinstance(along, SymbolicZero):
-        slope = -found * inverse(1 + gain * strain) * along
-    if not isinstance(along_gain, SymbolicZero):
-        _, bend = jax.jvp(lambda g: logarithmic_mean(g * strain), (gain,), (along_gain,))
-        slope = slope - found * strain * bend
-    return found, slope
+
+    def by_gain() -> Array:
+        means = jax.jvp(lambda g: logarithmic_mean(g * strain), (gain,), (jnp.ones_like(gain),))
+        return -found * strain * means[1]
+
+    return found, along(found, tangents, lambda: -found * inverse(1 + gain * strain), by_gain)
 
 
 stiffening_decay.defjvp(_decay_slope, symbolic_zeros=True)
@@ -123,20 +134,15 @@ def signed_root(x: Float[Array, "*grid"], softness: Float[Array, "*grid"]) -> Fl
 
 def _signed_root(x: Array, softness: Array) -> tuple[Array, Array, Array]:
     """The root, and its slopes by both."""
-    inverse = 1 / jnp.sqrt(jnp.sqrt(x**2 + softness**2))
-    square = inverse * inverse
+    over = inverse_root(jnp.sqrt(x**2 + softness**2))
+    square = over * over
     share = x * square  # of x in what is under the root: towards one far from zero
-    return x * inverse, inverse * (1 - share * share / 2), -share * square * inverse * softness / 2
+    return x * over, over * (1 - share * share / 2), -share * square * over * softness / 2
 
 
 def _signed_root_slopes(primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> tuple[Array, Array]:
-    root, *slopes = _signed_root(*primals)
-    parts: list[Any] = [
-        slope * tangent
-        for slope, tangent in zip(slopes, tangents, strict=True)
-        if not isinstance(tangent, SymbolicZero)
-    ]
-    return root, jnp.broadcast_to(sum(parts[1:], parts[0]), root.shape)
+    root, by_x, by_softness = _signed_root(*primals)
+    return root, along(root, tangents, lambda: by_x, lambda: by_softness)
 
 
 signed_root.defjvp(_signed_root_slopes, symbolic_zeros=True)

@@ -145,7 +145,7 @@ def periodic_cycle(
     motor = turned(motor, point)
     reference = reference_radius(motor)
     breakpoints = motor.breakpoints()
-    sizes = resolution.behind_manifolds() if sides_of(motor) else resolution
+    sizes = meshed(motor, resolution)
     elements = _elements(motor, sizes, resolution.filled if filled is None else filled)
 
     def orbit_at(held: OperatingPoint, refinements: int) -> Orbit:
@@ -166,6 +166,11 @@ def periodic_cycle(
         motor, fluid, point, reference, alone, held, breakpoints, elements
     )
     return _assessed(motor, fluid, point, reference, *coupled)
+
+
+def meshed(motor: Motor, resolution: Resolution) -> Resolution:
+    """What a motor is solved with where a resolution is asked for."""
+    return resolution.behind_manifolds() if sides_of(motor) else resolution
 
 
 def nearby_cycle(cycle: Cycle, motor: Motor, fluid: AbstractFluid, point: OperatingPoint) -> Cycle:

@@ -5,12 +5,11 @@ Where there can be no such process, or a law of the user's own cannot be sent to
 solver gives the same numbers here.
 """
 
-import math
 import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
 from typing import Any
 
@@ -29,18 +28,6 @@ UNSENDABLE = (pickle.PicklingError, AttributeError, TypeError)
 """What pickle raises for a function inside a function, and for a law that refuses."""
 
 Results = dict[str, float]
-
-GEOMETRY_ALONE = ("min_lift", "max_lift")
-"""Results that are the cam's, which the second solver is not asked for."""
-
-
-def all_results(ours: Mapping[str, Any], found: Mapping[str, Any]) -> dict[str, Any]:
-    """Every result as the second solver has it: NaN for what it does not compute.
-
-    So a limit on such a result is never said to hold by a solver that has not seen it.
-    """
-    unseen = {name: ours[name] if name in GEOMETRY_ALONE else math.nan for name in ours}
-    return {**unseen, **found}
 
 
 class SecondSolver(Threads):

@@ -27,9 +27,10 @@ from camring.objective.objective import assessment_of
 from camring.physics.resolution import Resolution
 from camring.programs.compiled import assess
 from camring.reference import NoSecondSolver, NotStarShapedError, OrbitError, machine_of
-from camring.studies.envelope_check import SECOND_ACCURACY, EnvelopeCheck
+from camring.studies.envelope_check import EnvelopeCheck
 from camring.studies.envelope_words import document_of, range_in_words
-from camring.studies.reference_processes import GEOMETRY_ALONE, SecondSolver, all_results
+from camring.studies.reference_processes import SecondSolver
+from camring.studies.reference_results import GEOMETRY_ALONE, all_results
 
 FINER, INDEPENDENT, SEARCH = "finer", "independent", "search"
 EYES = {FINER: "at finer resolution", INDEPENDENT: "by SciPy's stiff solver"}
@@ -127,12 +128,9 @@ def begin_again(motor_file: MotorFile, second: SecondSolver) -> Callable[[], dic
             for a, b in zip(finer.results, results, strict=True)
         )
         sound = jnp.zeros(len(metrics), int)
+        known = [{*each, *GEOMETRY_ALONE} for each in results]
         independent = outcome_of(assessment_of(system, goal, metrics, sound))
-        own = [
-            {name: each[name] for name in each if name in (*found, *GEOMETRY_ALONE)}
-            for each, found in zip(independent.results, results, strict=True)
-        ]
-        return {FINER: finer, INDEPENDENT: replace(independent, results=own)}
+        return {FINER: finer, INDEPENDENT: independent.with_results_in(known)}
 
     return seen
 
@@ -240,11 +238,7 @@ def envelope_checks(found: EnvelopeCheck) -> list[Check]:
         return [*checks, Check(by, False, found.failure)]
     for place, (name, g) in found.second.items():
         checks.append(
-            Check(
-                f"{by} at {grid.text(place)}",
-                g <= SECOND_ACCURACY,
-                f"least margin {-g:.4g}, of {name}",
-            )
+            Check(f"{by} at {grid.text(place)}", g <= 0, f"least margin {-g:.4g}, of {name}")
         )
     return checks
 

@@ -166,12 +166,8 @@ def overlaid(
         Metrics(**{name: jnp.asarray(each.get(name, math.nan)) for name in NAMES}) for each in whole
     )
     assessed = outcome_of(assess_metrics(system, goal, metrics), design=dict(ours.design))
-    known = [
-        {name: value for name, value in each.items() if name in there}
-        for each, there in zip(assessed.results, whole, strict=True)
-    ]
     approximation = math.nan if ours.failure else ours.physical_objective
-    return replace(assessed, results=known, approximation=approximation)
+    return replace(assessed.with_results_in(whole), approximation=approximation)
 
 
 def names_given(given: Sequence[Mapping[str, float]]) -> list[str]:

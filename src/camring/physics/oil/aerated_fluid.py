@@ -13,12 +13,12 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Bool, Float
 
 from camring.numerics.quantity import Q, real
 from camring.numerics.selection import bounded, smaller
 from camring.numerics.smooth import (
+    along,
     exponential_mean,
     inverse,
     logarithmic_mean,
@@ -129,7 +129,7 @@ class AeratedFluid(AbstractOil):
         liquid = self.bulk_modulus * log_strain * exponential_mean((gain - 1) * log_strain)
 
         flat = 1 - 1 / self.polytropic_index
-        held = jnp.where(self.air_fraction > 0, pressure, p0)
+        held = self._held(pressure)
         u = jnp.log(smaller(held, p0) / p0)
         below = p0 * u * exponential_mean(flat * u)
 
@@ -197,17 +197,15 @@ def _pressure_and_root(
 def _pressure_slope(primals: tuple[Any, ...], tangents: tuple[Any, ...]) -> tuple[Array, Array]:
     """Of the equation itself: `root dP = P dstate + (P/beta)^2 dbeta + dfree`."""
     found, root = _pressure_and_root(*primals)
-    along_state, along_modulus, along_free, _ = tangents
     _, bulk_modulus, _, has_air = primals
-    slope = jnp.zeros_like(found)
-    if not isinstance(along_state, SymbolicZero):
-        slope = jnp.where(has_air, found * inverse(root), bulk_modulus) * along_state
-    if not isinstance(along_modulus, SymbolicZero):
-        share = found / bulk_modulus
-        slope = slope + jnp.where(has_air, share * share * inverse(root), share) * along_modulus
-    if not isinstance(along_free, SymbolicZero):
-        slope = slope + jnp.where(has_air, inverse(root), 0) * along_free
-    return found, slope
+    over, share = inverse(root), found / bulk_modulus
+    return found, along(
+        found,
+        tangents[:3],
+        lambda: jnp.where(has_air, found * over, bulk_modulus),
+        lambda: jnp.where(has_air, share * share * over, share),
+        lambda: jnp.where(has_air, over, 0),
+    )
 
 
 _pressure_of.defjvp(_pressure_slope, symbolic_zeros=True)
