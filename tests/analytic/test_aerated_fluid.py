@@ -27,6 +27,7 @@ def oil(**changes):
 OILS = (
     oil(),
     oil(polytropic_index=1.4, modulus_gain=9.0),
+    oil(polytropic_index=0.8),
     oil(air_fraction=0.2, modulus_gain=1.0),
     oil(air_fraction=1e-4, dissolution_pressure=3e7, modulus_gain=1e-3),
 )
@@ -34,7 +35,9 @@ OILS = (
 
 def independent(fluid):
     names = Oil.__dataclass_fields__.keys() - {"law"}
-    return OilLaw(Oil(**{name: float(getattr(fluid, name)) for name in names}, law="aerated"))
+    given = {name: getattr(fluid, name) for name in names}
+    numbers = {name: float(value) for name, value in given.items() if value is not None}
+    return OilLaw(Oil(**numbers, law="aerated"))
 
 
 @pytest.mark.parametrize("fluid", OILS)
@@ -103,6 +106,14 @@ def test_a_vanishing_gain_is_no_gain(gain):
     tolerance = 1e-12 + gain * 0.3
     np.testing.assert_allclose(bent.density_at(pressure), straight.density_at(pressure), tolerance)
     np.testing.assert_allclose(bent.potential(pressure), straight.potential(pressure), tolerance)
+
+
+def test_air_that_stays_as_warm_has_an_index_of_one():
+    pressure = jnp.asarray(PRESSURES)
+    given, left_out = oil(polytropic_index=1.0), oil()
+    for law in ("density_at", "bulk_modulus_at", "potential"):
+        expected = getattr(given, law)(pressure)
+        np.testing.assert_allclose(getattr(left_out, law)(pressure), expected, 1e-13, 1e-12)
 
 
 def test_a_vanishing_gain_still_has_a_derivative():

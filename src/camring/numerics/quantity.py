@@ -17,7 +17,7 @@ from jaxtyping import ArrayLike as ArrayLike
 # JAX writes no types for this one.
 jax.config.update("jax_enable_x64", True)  # type: ignore[no-untyped-call]
 
-__all__ = ["Q", "real"]
+__all__ = ["Q", "real", "real_if_given"]
 
 
 def real(value: ArrayLike) -> Float[Array, "..."]:
@@ -25,3 +25,8 @@ def real(value: ArrayLike) -> Float[Array, "..."]:
     if isinstance(value, float | int | np.ndarray | np.generic):
         value = np.asarray(value, dtype=np.float64)  # JAX would compile a program to convert it
     return jnp.asarray(value, dtype=jnp.float64)
+
+
+def real_if_given(value: ArrayLike | None) -> Float[Array, "..."] | None:
+    """The same for a number that may be left out, where its law then takes a plainer form."""
+    return None if value is None else real(value)

@@ -211,8 +211,8 @@ def law_keys(slot: Slot, law: type) -> dict[str, tuple[str, Entry, Any]]:
     hints = get_type_hints(law, include_extras=True)
     keys = {}
     for each in fields(law):
-        if each.default is None:  # a part of its own, which no key of the law gives
-            continue
+        if each.default is None and not hasattr(hints[each.name], "__metadata__"):
+            continue  # a part of its own, which no key of the law gives
         path = slot.keys.get(each.name, f"{slot.table}.{each.name}")
         default = each.default if each.default is not MISSING else ...
         default = FILE_DEFAULTS.get(path, default)

@@ -15,7 +15,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, Bool, Float
 
-from camring.numerics.quantity import Q, real
+from camring.numerics.quantity import Q, real, real_if_given
 from camring.numerics.selection import bounded, smaller
 from camring.numerics.smooth import (
     along,
@@ -56,11 +56,16 @@ class AeratedFluid(AbstractOil):
     air_fraction: Q[Float[Array, ""], "1"] = eqx.field(converter=real, default=0.005)
     """Free air by volume at atmospheric pressure, in [0, 1)."""
     air_density: Q[Float[Array, ""], "kg/m3"] = eqx.field(converter=real, default=1.2)
-    polytropic_index: Q[Float[Array, ""], "1"] = eqx.field(converter=real, default=1.0)
+    polytropic_index: Q[Float[Array, ""] | None, "1"] = eqx.field(
+        converter=real_if_given, default=None
+    )
+    """None where free air stays as warm as the oil: an index of 1, in a form that is quick."""
     dissolution_pressure: Q[Float[Array, ""], "Pa"] = eqx.field(converter=real, default=3e6)
     """Above it all air is in solution."""
-    modulus_gain: Q[Float[Array, ""], "1"] = eqx.field(converter=real, default=0.0)
-    """Rise of the liquid's bulk modulus for each unit of pressure."""
+    modulus_gain: Q[Float[Array, ""] | None, "1"] = eqx.field(
+        converter=real_if_given, default=None
+    )
+    """Rise of the liquid's bulk modulus for each unit of pressure; None where it does not."""
 
     @property
     def air_ratio(self) -> Q[Float[Array, ""], "1"]:
@@ -80,10 +85,27 @@ class AeratedFluid(AbstractOil):
         x = bounded((pressure - self.atmospheric_pressure) / span, 0, 1)
         return 1 - x**2 * (3 - 2 * x), -6 * x * (1 - x) / span
 
-    def _gas(self, pressure: Pressure) -> Q[Float[Array, "*grid"], "1"]:
-        """Volume of all air, were it free, over the liquid's at atmospheric pressure."""
-        relative = self._held(pressure) / self.atmospheric_pressure
-        return self.air_ratio * power(relative, -1 / self.polytropic_index)
+    def _gas(
+        self, pressure: Pressure
+    ) -> tuple[Q[Float[Array, "*grid"], "1"], Q[Float[Array, "*grid"], "1/Pa"]]:
+        """Volume of all air, were it free, over the liquid's at atmospheric pressure, and its
+        compressibility."""
+        over = inverse(self._held(pressure))
+        relative = self.atmospheric_pressure * over
+        if self.polytropic_index is None:
+            return self.air_ratio * relative, over
+        each = 1 / self.polytropic_index
+        return self.air_ratio * power(relative, each), each * over
+
+    def _liquid(
+        self, pressure: Pressure
+    ) -> tuple[Q[Float[Array, "*grid"], "1"], Q[Float[Array, "*#grid"], "1/Pa"]]:
+        """Volume of the liquid over that at atmospheric pressure, and its compressibility."""
+        strain = (pressure - self.atmospheric_pressure) / self.bulk_modulus
+        if self.modulus_gain is None:
+            return jnp.exp(-strain), 1 / self.bulk_modulus
+        stiffer = inverse(1 + self.modulus_gain * strain)
+        return stiffening_decay(strain, self.modulus_gain), stiffer / self.bulk_modulus
 
     def _held(self, pressure: Pressure) -> Pressure:
         """The pressure; without air it may fall below zero, where no power is defined."""
@@ -93,13 +115,11 @@ class AeratedFluid(AbstractOil):
         self, pressure: Pressure
     ) -> tuple[Q[Float[Array, "*grid"], "1"], Q[Float[Array, "*grid"], "1/Pa"]]:
         """Volume over that of the liquid at atmospheric pressure, and minus its derivative."""
-        strain = (pressure - self.atmospheric_pressure) / self.bulk_modulus
-        liquid = stiffening_decay(strain, self.modulus_gain)
-        stiffer = inverse(1 + self.modulus_gain * strain)
+        gas, of_gas = self._gas(pressure)
+        liquid, of_liquid = self._liquid(pressure)
         share, share_slope = self.undissolved(pressure)
-        gas = self._gas(pressure)
-        shrinking = share / self.polytropic_index * inverse(self._held(pressure)) - share_slope
-        return gas * share + liquid, gas * shrinking + liquid * stiffer / self.bulk_modulus
+        volume = gas * share + liquid
+        return volume, gas * (share * of_gas - share_slope) + liquid * of_liquid
 
     def density_at(self, pressure: Pressure) -> Q[Float[Array, "*grid"], "kg/m3"]:
         return self.mass / self._volume(pressure)[0]
@@ -122,28 +142,36 @@ class AeratedFluid(AbstractOil):
 
         A closed form, smooth through every value of gain and polytropic index.
         """
-        # notation: p0 atmospheric pressure; u = ln(P/p0)
-        p0, gain = self.atmospheric_pressure, self.modulus_gain
-        strain = (pressure - p0) / self.bulk_modulus
-        log_strain = strain * logarithmic_mean(gain * strain)
-        liquid = self.bulk_modulus * log_strain * exponential_mean((gain - 1) * log_strain)
-
-        flat = 1 - 1 / self.polytropic_index
-        held = self._held(pressure)
-        u = jnp.log(smaller(held, p0) / p0)
-        below = p0 * u * exponential_mean(flat * u)
-
+        # notation: p0 atmospheric pressure
+        p0, held = self.atmospheric_pressure, self._held(pressure)
         # Between p0 and pc the free share is a cubic in q = P/p0.
-        top = jnp.log(bounded(held, p0, self.dissolution_pressure) / p0)
         span = self.dissolution_pressure / p0 - 1
         square, cube = 3 / span**2, 2 / span**3
-        coefficients = (2 * square + 3 * cube, -square - 3 * cube, cube)
-        dissolving = (1 - square - cube) * top * exponential_mean(flat * top)
-        for order, coefficient in enumerate(coefficients, start=1):
-            exponent = flat + order
-            dissolving = dissolving + coefficient * jnp.expm1(exponent * top) / exponent
-        dissolving = p0 * dissolving
-        return (liquid + self.air_ratio * (below + dissolving)) / self.mass
+        cubic = 1 - square - cube, 2 * square + 3 * cube, -square - 3 * cube, cube
+        expanded, compressed = smaller(held, p0), bounded(held, p0, self.dissolution_pressure)
+        air = self._moments(expanded / p0, 1)[0]
+        for coefficient, moment in zip(cubic, self._moments(compressed / p0, 4), strict=True):
+            air = air + coefficient * moment
+        return (self._liquid_work(pressure) + self.air_ratio * p0 * air) / self.mass
+
+    def _moments(
+        self, ratio: Q[Float[Array, "*grid"], "1"], count: int
+    ) -> list[Q[Float[Array, "*grid"], "1"]]:
+        """Integrals of `q^(k - 1/n)` from 1 to a ratio of pressures, for k from 0."""
+        log = jnp.log(ratio)
+        if self.polytropic_index is None:
+            return [log, *((ratio**k - 1) / k for k in range(1, count))]
+        flat = 1 - 1 / self.polytropic_index
+        of_powers = (jnp.expm1((flat + k) * log) / (flat + k) for k in range(1, count))
+        return [log * exponential_mean(flat * log), *of_powers]
+
+    def _liquid_work(self, pressure: Pressure) -> Pressure:
+        """Integral of the liquid's volume from atmospheric pressure."""
+        strain, gain = (pressure - self.atmospheric_pressure) / self.bulk_modulus, self.modulus_gain
+        if gain is None:
+            return -self.bulk_modulus * jnp.expm1(-strain)
+        log_strain = strain * logarithmic_mean(gain * strain)
+        return self.bulk_modulus * log_strain * exponential_mean((gain - 1) * log_strain)
 
     def compression_power(
         self,
