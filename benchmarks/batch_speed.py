@@ -226,7 +226,7 @@ def law_costs(given: Given) -> dict[str, list[float]]:
     for name, system in kinds.items():
         run = partial(evaluate_many, space, system, goal, points, threads=1, chunk=SOME)
         rows[name] = [
-            processor_times(partial(run, resolution), 5)[0] / SOME
+            processor_times(partial(run, resolution), 20)[0] / SOME
             for resolution in OF_BATCHES.values()
         ]
     return rows

@@ -167,10 +167,49 @@ def test_many_side_by_side_are_the_motors_alone(simulated):
 
 
 def in_batch(simulated):
-    cases = [tuple(case) for case, _, _ in simulated] * 4
-    stacked = jax.tree.map(lambda *leaves: jnp.stack(leaves, axis=-1), *cases)
-    batch = BatchProgram(simulate_batch)(*stacked, BatchResolution())
+    stacked = side_by_side([case for case, _, _ in simulated] * 4)
+    batch = IN_BATCH(*stacked, BatchResolution())
     return batch, BatchProgram(summarise_batch)(batch), stacked
+
+
+IN_BATCH = BatchProgram(simulate_batch)
+
+
+def side_by_side(cases):
+    return jax.tree.map(lambda *leaves: jnp.stack(leaves, axis=-1), *map(tuple, cases))
+
+
+def test_balances_close_from_slow_to_fast_and_from_cold_to_warm(simulated):
+    """Slow motors' pressure hangs on what leaks: rise and pressure take more turns."""
+    rng = np.random.default_rng(4)
+    cases = []
+    for case in [case for case, _, _ in simulated] * 32:
+        inlet = float(case.fluid.line.temperature)
+        cooling = {
+            "ambient_temperature": real(inlet + rng.uniform(-60, 10)),
+            "heat_transfer": rng.uniform(0, 4) * case.motor.thermal.heat_transfer,
+        }
+        point = replace(
+            case.point,
+            shaft_speed=case.point.shaft_speed * rng.uniform(0.05, 1.5),
+            supply_pressure=case.point.supply_pressure * rng.uniform(0.3, 1.2),
+        )
+        cases.append(Case(cooled(case, **cooling).motor, case.fluid, point))
+    batch = IN_BATCH(*side_by_side(cases), BatchResolution())
+    assert not np.any(np.asarray(batch.cycle.verdict.code))
+    rise = np.asarray(batch.cycle.motor.thermal.rise)
+    assert np.min(rise) < 0
+    assert np.max(rise) > 20
+
+
+def test_a_motor_without_a_number_leaves_the_others_as_they_are(simulated):
+    case, other = (case for case, _, _ in simulated)
+    none = cooled(case, ambient_temperature=real(np.nan))
+    beside = IN_BATCH(*side_by_side([none, other]), BatchResolution()).cycle
+    alone = IN_BATCH(*side_by_side([other, other]), BatchResolution()).cycle
+    assert int(beside.verdict.code[0]) != 0
+    assert int(beside.verdict.code[1]) == 0
+    assert float(beside.motor.thermal.rise[1]) == float(alone.motor.thermal.rise[1])
 
 
 def changed_numbers(motor):

@@ -205,6 +205,12 @@ def carry_batch(
     return replace(known, mesh=mesh), at_stages
 
 
+def step_batch(equation: Equation, at_stages: Forcing, known: Orbit) -> Orbit:
+    """One Newton step from solutions at hand, whose residual stays what it was."""
+    node_state, stages = _step(equation, at_stages, known.mesh, list(known.stage_state))
+    return replace(known, node_state=node_state, stage_state=jnp.stack(stages))
+
+
 def settle_batch(equation: Equation, at_stages: Forcing, known: Orbit) -> BatchOrbit:
     """Solutions at hand as a function of the equation: one Newton step from a constant.
 

@@ -17,16 +17,20 @@ from camring.geometry.batch_cam import SAMPLES_PER_SPAN, RoundTheCam, radius_at,
 from camring.geometry.cam import RadialCam
 from camring.geometry.window import TabulatedWindow
 from camring.numerics.batch import ascending_rows
+from camring.numerics.batch_mesh import graded_batch
 from camring.numerics.batch_periodic import (
     PeriodicResolution,
     carry_batch,
     settle_batch,
     solve_periodic_batch,
+    step_batch,
 )
 from camring.numerics.equation import Equation
 from camring.numerics.mesh import LAYER_ELEMENTS
 from camring.numerics.once import computed_once
+from camring.numerics.periodic import Orbit
 from camring.numerics.quantity import Q
+from camring.numerics.radau import STAGES
 from camring.numerics.spline import Jet
 from camring.numerics.spline import knots as spline_knots
 from camring.numerics.verdict import Verdict, verdict
@@ -94,6 +98,9 @@ class BatchResolution:
 
 COARSER = 0.7
 """Share of the elements with which a batch is solved once more, for an error estimate."""
+
+GUESSED_ELEMENTS = 2
+"""Between two breakpoints, where pressure is guessed: enough for means over a period."""
 
 UNIQUE_DECAY = 1e-8  # what rounding leaves of a period in which nothing is renewed
 
@@ -181,6 +188,27 @@ def periodic_cycles(
     return BatchCycle(cycle, cam, solved.at_stages)
 
 
+def guessed_cycles(
+    motor: Motor, fluid: AbstractFluid, point: OperatingPoint, resolution: BatchResolution
+) -> BatchCycle:
+    """Cycles whose chambers have at once the pressure of the ports that they are open to.
+
+    Quick, and no solution of anything: to begin with.
+    """
+    motor = turned(motor, point)
+    cam = computed_once(round_the_cam(radial(motor), resolution.parts))
+    reference = computed_once(reference_radii(motor, cam))
+    breakpoints, _, _ = _breakpoints(motor, knots=False)
+    mesh = graded_batch(breakpoints, motor.cam.period, GUESSED_ELEMENTS)
+    equation = _equation(motor, fluid, point, reference)
+    at_stages = equation.forcing(mesh, jnp.asarray(STAGES))
+    state = equation.guess(at_stages)
+    unsolved = jnp.full_like(state[0, 0], jnp.inf)
+    orbit = Orbit(mesh, state[0], state, unsolved, jnp.zeros((), int))
+    cycle = Cycle(motor, fluid, point, reference, orbit, None, verdict(), _sprung(motor, cam))
+    return BatchCycle(cycle, cam, at_stages)
+
+
 def nearby_cycles(
     known: Cycle,
     motor: Motor,
@@ -218,6 +246,14 @@ def settled(found: BatchCycle) -> BatchCycle:
     cycle = found.cycle
     equation = _equation(cycle.motor, cycle.fluid, cycle.point, cycle.reference_radius)
     orbit = settle_batch(equation, found.at_stages, cycle.orbit).orbit
+    return found._replace(cycle=replace(cycle, orbit=orbit))
+
+
+def stepped(found: BatchCycle) -> BatchCycle:
+    """The same step without what tells how good it is."""
+    cycle = found.cycle
+    equation = _equation(cycle.motor, cycle.fluid, cycle.point, cycle.reference_radius)
+    orbit = step_batch(equation, found.at_stages, cycle.orbit)
     return found._replace(cycle=replace(cycle, orbit=orbit))
 
 

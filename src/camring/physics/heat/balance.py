@@ -15,7 +15,7 @@ from typing import NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 from camring.numerics.quantity import Q
 from camring.numerics.selection import larger
@@ -119,27 +119,40 @@ def missed(
     return rise_of(cycle) - balanced_rise(cycle, heat_flows(cycle, sampled(cycle), drop))
 
 
+def missed_and_slope(
+    cycle: Cycle, sampled: Sampled, drop: Float[Array, "*grid"]
+) -> tuple[Q[Float[Array, "*batch"], "K"], Q[Float[Array, "*batch"], "1"]]:
+    """The same, and its derivative by the rise while the pressure stays, and so `leakage_drop`."""
+    rise = rise_of(cycle)
+    return jax.jvp(
+        lambda at: missed(warmed(cycle, at), sampled, drop), (rise,), (jnp.ones_like(rise),)
+    )
+
+
 def settled_rise(cycle: Cycle, sampled: Sampled) -> Q[Float[Array, "*batch"], "K"]:
     """The rise that balances the flows of a cycle while its pressure stays: it hardly knows."""
-
     # What the oil loses takes the longest to work out, and stays with the pressure.
     drop = leakage_drop(cycle, sampled(cycle))
 
     # A loop of this kind is one that the machine code of a batch knows, too.
     def improved(current: tuple[Array, Array]) -> tuple[Array, Array]:
         rise, count = current
-        value, slope = jax.jvp(
-            lambda at: missed(warmed(cycle, at), sampled, drop), (rise,), (jnp.ones_like(rise),)
-        )
+        value, slope = missed_and_slope(warmed(cycle, rise), sampled, drop)
         return rise - value / slope, count + 1
 
     start = rise_of(cycle), jnp.asarray(0)
     return jax.lax.while_loop(lambda now: now[1] < FROZEN_STEPS, improved, start)[0]
 
 
+def closes(
+    rise: Q[Float[Array, "*batch"], "K"], left: Q[Float[Array, "*batch"], "K"]
+) -> Bool[Array, "*batch"]:
+    """Whether a balance leaves over no more than little; never where it is no number."""
+    return jnp.abs(left) < CLOSED * (1 + jnp.abs(rise))
+
+
 def with_verdict(cycle: Cycle, left: Q[Float[Array, "*batch"], "K"]) -> Cycle:
     """The cycle, not converged where a balance leaves over more than little, or no number."""
-    closed = jnp.abs(left) < CLOSED * (1 + jnp.abs(rise_of(cycle)))
     code = cycle.verdict.code
-    failed = jnp.where(closed, code, code | int(Fault.NOT_CONVERGED))
+    failed = jnp.where(closes(rise_of(cycle), left), code, code | int(Fault.NOT_CONVERGED))
     return eqx.tree_at(lambda each: each.verdict.code, cycle, failed)

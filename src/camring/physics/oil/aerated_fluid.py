@@ -62,9 +62,7 @@ class AeratedFluid(AbstractOil):
     """None where free air stays as warm as the oil: an index of 1, in a form that is quick."""
     dissolution_pressure: Q[Float[Array, ""], "Pa"] = eqx.field(converter=real, default=3e6)
     """Above it all air is in solution."""
-    modulus_gain: Q[Float[Array, ""] | None, "1"] = eqx.field(
-        converter=real_if_given, default=None
-    )
+    modulus_gain: Q[Float[Array, ""] | None, "1"] = eqx.field(converter=real_if_given, default=None)
     """Rise of the liquid's bulk modulus for each unit of pressure; None where it does not."""
 
     @property
