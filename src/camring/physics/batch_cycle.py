@@ -99,7 +99,7 @@ class BatchResolution:
 COARSER = 0.7
 """Share of the elements with which a batch is solved once more, for an error estimate."""
 
-GUESSED_ELEMENTS = 2
+GUESSED_ELEMENTS = 4
 """Between two breakpoints, where pressure is guessed: enough for means over a period."""
 
 UNIQUE_DECAY = 1e-8  # what rounding leaves of a period in which nothing is renewed

@@ -145,10 +145,12 @@ def settled_rise(cycle: Cycle, sampled: Sampled) -> Q[Float[Array, "*batch"], "K
 
 
 def closes(
-    rise: Q[Float[Array, "*batch"], "K"], left: Q[Float[Array, "*batch"], "K"]
+    rise: Q[Float[Array, "*batch"], "K"],
+    left: Q[Float[Array, "*batch"], "K"],
+    share: float = CLOSED,
 ) -> Bool[Array, "*batch"]:
-    """Whether a balance leaves over no more than little; never where it is no number."""
-    return jnp.abs(left) < CLOSED * (1 + jnp.abs(rise))
+    """Whether a balance leaves over less than a share; never where it is no number."""
+    return jnp.abs(left) < share * (1 + jnp.abs(rise))
 
 
 def with_verdict(cycle: Cycle, left: Q[Float[Array, "*batch"], "K"]) -> Cycle:

@@ -4,12 +4,12 @@ The same as `simulation.py`, with a batch along the last axis.
 """
 
 from dataclasses import replace
-from typing import Any
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax.lax import stop_gradient
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float, Int
 
 from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
@@ -31,7 +31,6 @@ from camring.physics.heat.balance import (
     missed,
     missed_and_slope,
     rise_of,
-    settled_rise,
     with_rise,
     with_verdict,
 )
@@ -40,8 +39,10 @@ from camring.physics.motor import Motor
 from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.operating_point import OperatingPoint
 
-MOST_PASSES = 12
-"""Times at most that rise and pressure are brought up to date in turn; two or three are usual."""
+ROUGHLY, NEARLY = 1e-2, 1e-4
+"""Shares of the rise that a first guess, and every turn but the last, may leave over."""
+MOST_TURNS = 12
+"""Of rise and pressure; two are usual."""
 
 
 def simulate_batch(
@@ -63,10 +64,13 @@ def simulate_batch(
     """
     if motor.thermal is None:
         return periodic_cycles(motor, fluid, point, resolution, filled)
-    guessed = guessed_cycles(motor, fluid, point, resolution)
-    rise = computed_once(settled_rise(guessed.cycle, _sampled(guessed)))
-    found = periodic_cycles(with_rise(motor, rise), fluid, point, resolution, filled)
-    return _balanced(found)
+    guess = _in_turns(guessed_cycles(motor, fluid, point, resolution), ROUGHLY)
+    rise = jnp.where(closes(guess.rise, guess.over, ROUGHLY), guess.rise, motor.thermal.rise)
+    motor = with_rise(motor, computed_once(rise))
+    first = periodic_cycles(motor, fluid, point, resolution, filled)
+    found = _in_turns(first, NEARLY)
+    last = settled(_at(first, found.rise - found.over / found.slope, found.stages))
+    return last._replace(cycle=with_verdict(last.cycle, _missed(last)))
 
 
 def neighbour_batch(
@@ -93,43 +97,54 @@ def _warmed(found: BatchCycle, rise: Q[Float[Array, " batch"], "K"]) -> BatchCyc
     return settled(_of(found, replace(found.cycle, motor=motor)))
 
 
-def _balanced(found: BatchCycle) -> BatchCycle:
-    """Cycles with the rise that closes their balance, and the pressures that go with it.
+class _InTurns(NamedTuple):
+    """Where rise and pressure have come to, with what the balance leaves over there."""
 
-    In turn a Newton step on the rise while the pressure stays, and one on the pressure, until
-    every member's balance closes; each stops by itself. One more of both follows.
+    rise: Q[Float[Array, " batch"], "K"]
+    stages: list[Float[Array, "element batch"]]
+    over: Q[Float[Array, " batch"], "K"]
+    slope: Q[Float[Array, " batch"], "1"]
+    """Of what is left over, by the rise while the pressure stays."""
+    turns: Int[Array, ""]
+
+
+def _in_turns(found: BatchCycle, share: float) -> _InTurns:
+    """A Newton step on the rise while the pressure stays, and one on the pressure, in turn.
+
+    Until every member's balance leaves over no more than a share of the rise; each stops by
+    itself, and one that has no number any more stops, too.
     """
 
-    def at(rise: Array, stages: list[Array]) -> BatchCycle:
-        orbit = replace(found.cycle.orbit, stage_state=jnp.stack(stages))
-        cycle = replace(found.cycle, motor=with_rise(found.cycle.motor, rise), orbit=orbit)
-        return _of(found, cycle)
+    def unsettled(now: _InTurns) -> Bool[Array, " batch"]:
+        return ~closes(now.rise, now.over, share) & ~jnp.isnan(now.over)
 
-    def open_by(rise: Array, stages: list[Array]) -> tuple[Array, Array]:
-        here = at(rise, stages)
-        sampled = _sampled(here)
-        return missed_and_slope(here.cycle, sampled, leakage_drop(here.cycle, sampled(here.cycle)))
+    def unfinished(now: _InTurns) -> Bool[Array, ""]:
+        return jnp.any(unsettled(now)) & (now.turns < MOST_TURNS)
 
-    def unsettled(rise: Array, over: Array) -> Array:
-        return ~closes(rise, over) & ~jnp.isnan(over)
+    def improved(now: _InTurns) -> _InTurns:
+        going = unsettled(now)
+        rise = jnp.where(going, now.rise - now.over / now.slope, now.rise)
+        moved = stepped(_at(found, rise, now.stages)).cycle.orbit.stage_state
+        stages = [jnp.where(going, new, old) for new, old in zip(moved, now.stages, strict=True)]
+        return _left_over(found, rise, stages, now.turns + 1)
 
-    def unfinished(carry: tuple[Any, ...]) -> Array:
-        rise, _, over, _, count = carry
-        return jnp.any(unsettled(rise, over)) & (count < MOST_PASSES)
+    start = rise_of(found.cycle), list(found.cycle.orbit.stage_state), jnp.asarray(0)
+    return jax.lax.while_loop(unfinished, improved, _left_over(found, *start))
 
-    def improved(carry: tuple[Any, ...]) -> tuple[Any, ...]:
-        rise, stages, over, slope, count = carry
-        going = unsettled(rise, over)
-        rise = jnp.where(going, rise - over / slope, rise)
-        moved = stepped(at(rise, stages)).cycle.orbit.stage_state
-        stages = [jnp.where(going, new, old) for new, old in zip(moved, stages, strict=True)]
-        return rise, stages, *open_by(rise, stages), count + 1
 
-    rise, stages = rise_of(found.cycle), list(found.cycle.orbit.stage_state)
-    start = rise, stages, *open_by(rise, stages), jnp.asarray(0)
-    rise, stages, over, slope, _ = jax.lax.while_loop(unfinished, improved, start)
-    last = settled(at(rise - over / slope, stages))
-    return last._replace(cycle=with_verdict(last.cycle, _missed(last)))
+def _left_over(
+    found: BatchCycle, rise: Array, stages: list[Array], turns: Int[Array, ""]
+) -> _InTurns:
+    here = _at(found, rise, stages)
+    sampled = _sampled(here)
+    drop = leakage_drop(here.cycle, sampled(here.cycle))
+    return _InTurns(rise, stages, *missed_and_slope(here.cycle, sampled, drop), turns)
+
+
+def _at(found: BatchCycle, rise: Array, stages: list[Array]) -> BatchCycle:
+    orbit = replace(found.cycle.orbit, stage_state=jnp.stack(stages))
+    motor = with_rise(found.cycle.motor, rise)
+    return _of(found, replace(found.cycle, motor=motor, orbit=orbit))
 
 
 def _of(found: BatchCycle, cycle: Cycle) -> BatchCycle:
