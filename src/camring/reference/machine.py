@@ -137,8 +137,9 @@ def _oil(fluid: Any) -> Oil:
     if kind not in ("ConstantFluid", "AeratedFluid"):
         raise NoSecondSolver(fluid)
     names = Oil.__dataclass_fields__.keys() - {"law"}
-    given = {name: number(getattr(fluid, name)) for name in names if hasattr(fluid, name)}
-    return Oil(**given, law="aerated" if kind == "AeratedFluid" else "constant")
+    given = {name: getattr(fluid, name, None) for name in names}
+    numbers = {name: number(value) for name, value in given.items() if value is not None}
+    return Oil(**numbers, law="aerated" if kind == "AeratedFluid" else "constant")
 
 
 SHAPES: dict[str, Literal["linear", "round", "table"]] = {

@@ -114,7 +114,12 @@ KNOWN_FIELDS: dict[str, tuple[str, str, float, float]] = {
     ),
     "fluid.air_fraction": ("the free air by volume at that pressure", "0.005", 0.0, 0.5),
     "fluid.air_density": ("the density of that air", '"1.2 kg/m^3"', 0.0, 100.0),
-    "fluid.polytropic_index": ("the polytropic index of the air", "1.4", 0.5, 5.0),
+    "fluid.polytropic_index": (
+        "the polytropic index of the air, which else stays as warm as the oil (1)",
+        "1.4",
+        0.5,
+        5.0,
+    ),
     "fluid.dissolution_pressure": (
         "the pressure above which all air is in solution",
         '"30 bar"',
