@@ -37,7 +37,8 @@ settings.load_profile("camring")
 
 
 # Memory that a process of tests may hold, after a file or within one, before it gives its programs
-# back: compiling takes as much as 0.6 GB for a moment. Every one also keeps some memory maps; Linux allows a process 65,530, and XLA does not survive the refusal of one more.
+# back: compiling takes as much as 0.6 GB for a moment. Every one also keeps some memory maps; Linux
+# allows a process 65,530, and XLA does not survive the refusal of one more.
 MOST_BYTES = 700_000_000
 MOST_BYTES_IN_A_FILE = 1_200_000_000
 MOST_MAPS = 30_000
