@@ -45,7 +45,8 @@ def test_a_search_says_where_it_is_while_nothing_comes(page):
         progress(record(0, 0.25))
         wait_for_line(
             page,
-            "1 of 30 evaluations, best 0.25, torque ripple 5.00 %, 1 feasible; 0 s since the last.",
+            "1 of 30 evaluations, best objective 0.25, torque ripple 5.00 %, 1 feasible; "
+            "0 s since the last.",
         )
         progress(Record(1, "x", np.zeros(1), failed("the mesh tangled")))
         wait_for_line(page, "Evaluation 1 failed: the mesh tangled. The search goes on; further")

@@ -370,8 +370,11 @@ class TestFiles:
         assert "camring new" in self.complaint(tmp_path / "x")
         assert "does not exist" in self.complaint(tmp_path / "a" / "b.toml")
 
-    def test_that_are_folders(self, tmp_path):
-        assert "is a directory" in self.complaint(tmp_path)
+    def test_that_are_folders_name_a_motor_in_them(self, tmp_path):
+        assert self.complaint(tmp_path).endswith("is a directory; name a motor file in it.")
+        for name in ("a.toml", "best.toml"):
+            (tmp_path / name).write_text(SOUND)
+            assert f"in it, such as {tmp_path / name}" in self.complaint(tmp_path)
 
     def test_that_may_not_be_read(self, tmp_path):
         path = tmp_path / "secret.toml"

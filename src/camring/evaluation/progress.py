@@ -201,7 +201,7 @@ class SearchProgress:
         outcome = self._best.outcome
         ripple = max((each.get("torque_ripple", 0.0) for each in outcome.results), default=0.0)
         return (
-            f"best {outcome.objective:.5g}, torque ripple {100 * ripple:.2f} %, "
+            f"best objective {outcome.objective:.5g}, torque ripple {100 * ripple:.2f} %, "
             f"{self._feasible} feasible"
         )
 

@@ -1,5 +1,6 @@
 """From a path to a TOML document: everything that can be wrong with a file as a file."""
 
+import contextlib
 import os
 import re
 import stat
@@ -34,7 +35,7 @@ def read_text(path: Path) -> str:
     try:
         status = os.stat(path)
         if stat.S_ISDIR(status.st_mode):
-            raise InputError(shown, "is a directory", "name a motor file in it")
+            raise InputError(shown, "is a directory", f"name a motor file in it{_first_of(path)}")
         if not stat.S_ISREG(status.st_mode):
             raise InputError(shown, "is not a regular file", "name a motor file")
         if status.st_size > LARGEST_FILE:
@@ -54,6 +55,16 @@ def read_text(path: Path) -> str:
             shown, f"cannot be read ({reason.lower()})", "name a file that you may read"
         ) from None
     return decode(content, shown)
+
+
+def _first_of(folder: Path) -> str:
+    """Which of its motor files, where a folder has some: of a study the best."""
+    with contextlib.suppress(OSError):
+        names = sorted(each.name for each in folder.glob("*.toml"))
+        if names:
+            name = "best.toml" if "best.toml" in names else names[0]
+            return f", such as {printable(folder / name)}"
+    return ""
 
 
 def decode(content: bytes, shown: str) -> str:
