@@ -17,6 +17,8 @@ from camring.programs.compilation_cache import PROGRAMS, SWITCH, keep_compiled_p
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+gc.set_threshold(50_000)  # as the command line does
+
 # Two workers on two cores: linear algebra that spins in both makes each wait for the other.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 

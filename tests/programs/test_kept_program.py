@@ -2,7 +2,7 @@
 
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 
 import equinox as eqx
 import jax
@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from camring.metrics.timing import port_timing
+from camring.numerics.radau import element_powers, horner
 from camring.physics.leakage import ConstantLeakage
 from camring.physics.resolution import Resolution
 from camring.programs import kept_program
@@ -140,6 +141,42 @@ def test_of_two_that_want_one_program_at_once_the_second_waits_for_the_first(fol
 
 def above(values, limit=0.5):
     return values * (values > limit)
+
+
+class TestBegun:
+    """Compiled in a thread, before it is asked for."""
+
+    def test_the_call_waits_for_it_and_says_the_same(self, folder, compilations):
+        case, timing = motors.sound_case(0), KeptProgram(port_timing)
+        shapes = timing.begin(*case).result(timeout=300)
+        found = timing(*case)
+        assert compilations == ["port_timing"]
+        assert len(kept(folder)) == 1
+        same(found, eqx.filter_jit(port_timing)(*case))
+        assert jax.tree.map(lambda leaf: leaf.shape, shapes) == jax.tree.map(np.shape, found)
+
+    def test_shapes_are_enough_to_begin_what_comes_after(self, folder, compilations):
+        first, second = KeptProgram(element_powers), KeptProgram(horner)
+        node, stages, fraction = jnp.ones(4), jnp.ones((3, 4)), jnp.asarray(0.5)
+        powers = first.begin(node, stages).result(timeout=300)
+        second.begin(powers, fraction)
+        found = second(first(node, stages), fraction)
+        assert sorted(compilations) == ["element_powers", "horner"]
+        np.testing.assert_allclose(found, 1, rtol=1e-12)
+
+    def test_what_is_there_is_not_begun(self, folder, compilations):
+        case = motors.sound_case(0)
+        KeptProgram(port_timing)(*case)
+        with pytest.raises(CancelledError):
+            KeptProgram(port_timing).begin(*case).result(timeout=300)
+        assert compilations == ["port_timing"]
+
+    def test_what_is_wrong_the_call_says(self, folder):
+        timing, (motor, fluid, _) = KeptProgram(port_timing), motors.sound_case(0)
+        with pytest.raises(CancelledError):
+            timing.begin(motor, fluid, None).result(timeout=300)
+        with pytest.raises(AttributeError, match="NoneType"):
+            timing(motor, fluid, None)
 
 
 def test_what_is_left_out_is_its_default(folder, compilations, monkeypatch):

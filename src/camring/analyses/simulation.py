@@ -26,14 +26,16 @@ from camring.physics.cycle import Cycle
 from camring.physics.operating_point import OperatingPoint
 from camring.physics.resolution import Resolution
 from camring.physics.rotation import turned
+from camring.physics.system import System
 from camring.programs.compiled import (
     Solved,
     assess_solved,
+    begin_simulation,
     simulate_compiled,
     solve,
     summarise_compiled,
 )
-from camring.programs.motor_program import motor_program
+from camring.programs.motor_program import begin, motor_program
 
 ACCURACY = 1e-5
 POOR = 0.5  # an efficiency below which no motor is meant to work
@@ -139,6 +141,7 @@ def simulated(file: MotorFile, *, estimate: bool = True, accuracy: float = ACCUR
         Wanted of each result, relative.
     """
     system, goal = file.system, file.goal
+    _begin(system, goal.harmonics)
     if not estimate:
         return _assessed(file, solve(system, goal))
     climbed = []
@@ -153,6 +156,17 @@ def simulated(file: MotorFile, *, estimate: bool = True, accuracy: float = ACCUR
     found = _assessed(file, Solved(system, cycles, tuple(each.metrics for each in climbed)))
     errors = tuple(_plain(each.error) for each in climbed)
     return replace(found, errors=errors, climbed=tuple(climbed))
+
+
+def _begin(system: System, harmonics: int) -> None:
+    """Compiles beside each other the programs that are asked for one after the other."""
+    motor, point = system.motor, system.operating_points[0]
+
+    def then() -> None:
+        begin(_starting, motor, system.fluid, _forwards(point))
+        begin(_port_timing, turned(motor, point), system.fluid, point)
+
+    begin_simulation(system, harmonics, then)
 
 
 def _assessed(file: MotorFile, solved: Solved) -> Simulated:

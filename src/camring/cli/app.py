@@ -8,6 +8,7 @@ Exit codes: 0 done, 1 failed, 2 bad input, 3 infeasible or not validated, 130 in
 """
 
 import atexit
+import gc
 import os
 import shlex
 import sys
@@ -112,6 +113,8 @@ def main() -> NoReturn:
     """Runs the command line of this process."""
     code = FAILED
     end_promptly()
+    # What reads a motor's laws makes objects by the million, and hardly one of them is garbage.
+    gc.set_threshold(50_000)
     try:
         app()
     except SystemExit as exit_:

@@ -5,7 +5,8 @@ its result, it is the same program for every operating point, command and study
 of motors with the same counts.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -37,7 +38,7 @@ from camring.physics.resolution import Resolution
 from camring.physics.rotation import turned
 from camring.physics.system import System
 from camring.physics.waves import waveforms as sampling
-from camring.programs.motor_program import motor_program, named
+from camring.programs.motor_program import begin, motor_program, named
 
 # `camring.api` offers these to `import camring`.
 _simulate = motor_program(simulation.simulate)
@@ -60,6 +61,22 @@ def simulate(
 
 
 simulate_compiled = simulate
+
+
+def begin_simulation(system: System, highest_order: int, then: Callable[[], None]) -> None:
+    """Compiles what simulates and what summarises beside each other, where that never was done.
+
+    `simulate` and `summarise` then find them, or wait. What else can be begun is `then`.
+    """
+    motor, point, shape = system.motor, system.operating_points[0], Resolution()
+    filled = cast(Array, np.asarray(shape.filled))
+    cycle = begin(_simulate, turned(motor, point), system.fluid, point, shape, filled)
+
+    def go_on(found: "Future[Cycle]") -> None:
+        if not found.cancelled():
+            begin(summarise, found.result(), highest_order).add_done_callback(lambda _: then())
+
+    cycle.add_done_callback(go_on)
 
 
 def cycles(system: System, resolution: Resolution | None = None) -> tuple[Cycle, ...]:

@@ -35,7 +35,7 @@ def described(value: Any) -> str:
 
 
 def _words(value: Any) -> Iterator[str]:
-    if isinstance(value, jax.Array | np.ndarray | np.generic):
+    if isinstance(value, jax.Array | np.ndarray | np.generic | jax.ShapeDtypeStruct):
         yield f"{value.dtype}{value.shape}{getattr(value, 'weak_type', False)};"
     elif value is None or type(value) in (bool, int, float, complex, str, bytes):
         yield f"{value!r};"

@@ -18,6 +18,7 @@ import os
 import sys
 import threading
 from collections.abc import Callable, Hashable, Iterator
+from concurrent.futures import Future
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, Protocol, TypeVar
@@ -120,6 +121,43 @@ class KeptProgram(Generic[Arguments, Result]):
             program = self._found(key, Path(folder), (args, kwargs), arrays)
         return self._traced(*args, **kwargs) if program is None else program(arrays)
 
+    def begin(self, *args: Any, **kwargs: Any) -> "Future[Any]":
+        """Compiles what a call with such arguments will need, in a thread; that call waits for it.
+
+        Arrays may be shapes alone (`jax.ShapeDtypeStruct`). What is wrong with them the call says.
+
+        Returns
+        -------
+        The result with shapes for arrays, as soon as Python has read the function and the compiler
+        goes on alone; cancelled where there is nothing to compile, or nothing that can be kept.
+        """
+        shapes: Future[Any] = Future()
+        folder = programs_folder()
+        args, kwargs = self._complete(*args, **kwargs)
+        leaves, structure = jax.tree.flatten((args, kwargs))
+        found = split(leaves, whole_form) if folder else None
+        begun = threading.Event()
+
+        def made() -> None:
+            with contextlib.suppress(Exception), contextlib.ExitStack() as stack:
+                stack.callback(begun.set)
+                stack.callback(shapes.cancel)
+                if found is None:
+                    return
+                arrays, forms = found
+                key = structure, forms
+                path = self._path(Path(folder), (args, kwargs))
+                stack.enter_context(self._busy.setdefault(key, threading.Lock()))
+                begun.set()
+                stack.enter_context(_one_process_at_a_time(path))
+                if key not in self._programs and not path.exists():
+                    given = args, kwargs
+                    self._programs[key] = self._compiled(path, given, arrays, shapes.set_result)
+
+        threading.Thread(target=made).start()
+        begun.wait()
+        return shapes
+
     def forget(self) -> None:
         """Gives back the machine code that this process holds; what is on disk stays."""
         self._programs.clear()
@@ -131,9 +169,7 @@ class KeptProgram(Generic[Arguments, Result]):
                 return None
             if key not in self._programs:
                 try:
-                    options = _xla_flags(), self._effort()
-                    name = program_name(self._function, given, options)
-                    path = folder / f"{self._function.__name__}-{name}{SUFFIX}"
+                    path = self._path(folder, given)
                 except Indescribable:
                     self._others.add(key)
                     return None
@@ -144,15 +180,27 @@ class KeptProgram(Generic[Arguments, Result]):
                 )
             return self._programs[key]
 
+    def _path(self, folder: Path, given: Any) -> Path:
+        name = program_name(self._function, given, (_xla_flags(), self._effort()))
+        return folder / f"{self._function.__name__}-{name}{SUFFIX}"
+
     def _effort(self) -> dict[str, Any]:
         """Options for the compiler, but for those that `XLA_FLAGS` name: a user's own go first."""
         sparing = SPARING if jax.default_backend() == "cpu" else {}
         chosen = sparing if self._options is None else self._options
         return {name: value for name, value in chosen.items() if f"--{name}=" not in _xla_flags()}
 
-    def _compiled(self, path: Path, given: Any, arrays: list[Any]) -> Program:
+    def _compiled(
+        self,
+        path: Path,
+        given: Any,
+        arrays: list[Any],
+        read: Callable[[Any], None] = lambda shapes: None,
+    ) -> Program:
         function, result = between_arrays(self._function, given)
-        lowered = jax.jit(function).lower(arrays)
+        program = jax.jit(function).trace(arrays)
+        lowered = program.lower()
+        read(Program(lambda _: program.out_info, result.tree)([]))
         with jax_store_unused():
             compiled = lowered.compile(compiler_options=self._effort())
         with contextlib.suppress(Exception):  # what cannot be kept is compiled once more

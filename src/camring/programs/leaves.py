@@ -73,5 +73,5 @@ def whole_form(array: Any) -> Hashable:
 def _kind_of(leaf: Any) -> Kind:
     if isinstance(leaf, jax.core.Tracer):
         return Kind.TRACED
-    array = isinstance(leaf, jax.Array | np.ndarray | np.generic)
+    array = isinstance(leaf, jax.Array | np.ndarray | np.generic | jax.ShapeDtypeStruct)
     return Kind.ARRAY if array else Kind.PART

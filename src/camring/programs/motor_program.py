@@ -1,6 +1,7 @@
 """One compiled program for all motors of the same counts and laws, whatever they are called."""
 
 from collections.abc import Callable
+from concurrent.futures import Future
 from copy import copy
 from functools import lru_cache, wraps
 from typing import Any, ParamSpec, TypeVar
@@ -15,6 +16,9 @@ Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
 
+_kept: dict[Callable[..., Any], KeptProgram[..., Any]] = {}
+
+
 def motor_program(
     function: Callable[Arguments, Result], compiler_options: dict[str, Any] | None = None
 ) -> Callable[Arguments, Result]:
@@ -23,14 +27,21 @@ def motor_program(
     A name is no number. As part of a program it would make another one for each motor
     file; see `named` for giving it back. Nor is a limit or a weight part of it, but data.
     """
-    kept = KeptProgram(function, compiler_options)
+    kept: KeptProgram[Arguments, Result] = KeptProgram(function, compiler_options)
 
     @wraps(function)
     def called(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
         args, kwargs = bare(args, kwargs)
         return kept(*args, **kwargs)
 
+    _kept[called] = kept
     return called
+
+
+def begin(program: Callable[..., Any], *args: Any) -> "Future[Any]":
+    """Compiles a `motor_program` beside what else is done; see `KeptProgram.begin`."""
+    args, _ = bare(args, {})
+    return _kept[program].begin(*args)
 
 
 def bare(args: Any, kwargs: Any) -> Any:
