@@ -2,9 +2,12 @@
 
 import re
 import subprocess
+from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 
 ROOT = Path(__file__).parent.parent
 PICTURES = (".png", ".svg", ".pdf", ".jpg", ".webp", ".gif")
@@ -58,3 +61,26 @@ def test_pages_and_sections_that_sources_cite_are_there(files):
         assert not [page for page in pages if not (ROOT / page).exists()], path
         for numbers in re.findall(r"theory\.md,? sections? ([\d, and]+)", text):
             assert {int(each) for each in re.findall(r"\d+", numbers)} <= sections, path
+
+
+OLDEST_PYTHON = "3.11.0"
+
+
+def test_every_pinned_version_runs_on_the_oldest_python():
+    """Of the packages that are installed; nobody there could install a pin that asks for more."""
+    asked = {}
+    for line in (ROOT / "constraints.txt").read_text().splitlines():
+        if not line or line.startswith("#"):
+            continue
+        pin = Requirement(line)
+        try:
+            found = metadata(pin.name)
+        except PackageNotFoundError:
+            continue
+        if found["Version"] in pin.specifier:
+            asked[pin.name] = found["Requires-Python"] or ""
+    assert {"jax", "numpy"} <= asked.keys()
+    refused = {
+        name for name, pythons in asked.items() if OLDEST_PYTHON not in SpecifierSet(pythons)
+    }
+    assert not refused

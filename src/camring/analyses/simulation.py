@@ -141,7 +141,7 @@ def simulated(file: MotorFile, *, estimate: bool = True, accuracy: float = ACCUR
         Wanted of each result, relative.
     """
     system, goal = file.system, file.goal
-    _begin(system, goal.harmonics)
+    _begin(system, goal.harmonics, with_starts=estimate)
     if not estimate:
         return _assessed(file, solve(system, goal))
     climbed = []
@@ -158,12 +158,13 @@ def simulated(file: MotorFile, *, estimate: bool = True, accuracy: float = ACCUR
     return replace(found, errors=errors, climbed=tuple(climbed))
 
 
-def _begin(system: System, harmonics: int) -> None:
+def _begin(system: System, harmonics: int, *, with_starts: bool) -> None:
     """Compiles beside each other the programs that are asked for one after the other."""
     motor, point = system.motor, system.operating_points[0]
 
     def then() -> None:
-        begin(_starting, motor, system.fluid, _forwards(point))
+        if with_starts:
+            begin(_starting, motor, system.fluid, _forwards(point))
         begin(_port_timing, turned(motor, point), system.fluid, point)
 
     begin_simulation(system, harmonics, then)

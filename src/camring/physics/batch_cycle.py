@@ -204,7 +204,8 @@ def guessed_cycles(
     at_stages = equation.forcing(mesh, jnp.asarray(STAGES))
     state = equation.guess(at_stages)
     unsolved = jnp.full_like(state[0, 0], jnp.inf)
-    orbit = Orbit(mesh, state[0], state, unsolved, jnp.zeros((), int))
+    node_state = jnp.roll(state[2], 1, axis=0)  # what an element ends with the next begins with
+    orbit = Orbit(mesh, node_state, state, unsolved, jnp.zeros((), int))
     cycle = Cycle(motor, fluid, point, reference, orbit, None, verdict(), _sprung(motor, cam))
     return BatchCycle(cycle, cam, at_stages)
 

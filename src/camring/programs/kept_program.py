@@ -136,16 +136,16 @@ class KeptProgram(Generic[Arguments, Result]):
         args, kwargs = self._complete(*args, **kwargs)
         leaves, structure = jax.tree.flatten((args, kwargs))
         found = split(leaves, whole_form) if folder else None
-        begun = threading.Event()
+        if found is None:
+            shapes.cancel()
+            return shapes
+        (arrays, forms), begun = found, threading.Event()
+        key = structure, forms
 
         def made() -> None:
             with contextlib.suppress(Exception), contextlib.ExitStack() as stack:
                 stack.callback(begun.set)
                 stack.callback(shapes.cancel)
-                if found is None:
-                    return
-                arrays, forms = found
-                key = structure, forms
                 path = self._path(Path(folder), (args, kwargs))
                 stack.enter_context(self._busy.setdefault(key, threading.Lock()))
                 begun.set()
