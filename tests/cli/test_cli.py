@@ -91,7 +91,10 @@ def test_resuming_nothing_is_refused(tmp_path):
 BROKEN = """
 from camring.cli import app as cli
 from camring.cli import resume
+import os
+import signal
 import sys
+import time
 
 @cli.app.command()
 def fail(how: str) -> None:
@@ -99,6 +102,12 @@ def fail(how: str) -> None:
         raise ZeroDivisionError("division by zero\\nand more")
     if how == "ctrl-c":
         raise KeyboardInterrupt
+    if how == "ctrl-c taken for a failure":
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(10)
+        except KeyboardInterrupt:
+            raise RuntimeError("a callback failed") from None
     for _ in range(100000):
         print("a line that nobody reads")
 
@@ -130,6 +139,10 @@ def test_ctrl_c_is_exit_code_130_without_a_traceback():
     done = broken("ctrl-c")
     assert done.returncode == 130
     assert done.stderr == "camring: Interrupted.\n"
+
+
+def test_ctrl_c_that_a_library_takes_for_a_failure_is_130_too():
+    assert broken("ctrl-c taken for a failure").returncode == 130
 
 
 def test_a_reader_that_goes_away_is_no_fault():

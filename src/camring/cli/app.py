@@ -19,7 +19,7 @@ import typer
 from typer.core import TyperGroup
 
 from camring.evaluation.interrupt import EXIT_CODE as INTERRUPTED
-from camring.evaluation.interrupt import end_at_once, end_promptly
+from camring.evaluation.interrupt import end_at_once, end_promptly, was_interrupted
 from camring.files.errors import CamringError
 from camring.files.visible import say
 from camring.programs.compilation_cache import keep_compiled_programs
@@ -121,6 +121,8 @@ def main() -> NoReturn:
         code = exit_.code if isinstance(exit_.code, int) else int(exit_.code is not None)
     except KeyboardInterrupt as error:  # between two steps of the command line's library
         code = _say("Interrupted.", INTERRUPTED, error)
+    if code == FAILED and was_interrupted():
+        code = INTERRUPTED
     _end(code)
 
 

@@ -33,6 +33,18 @@ def end_promptly() -> None:
     threading.Thread(target=_watch, args=(reading,), name="camring-ctrl-c", daemon=True).start()
 
 
+_came = threading.Event()
+HEARD = 0.05  # seconds in which the thread that learns of a signal has run
+
+
+def was_interrupted() -> bool:
+    """Whether Ctrl-C came to a process that ends promptly, whatever became of the exception.
+
+    A library may take `KeyboardInterrupt` for a failure of its own.
+    """
+    return _came.wait(HEARD)
+
+
 def end_at_once() -> None:
     """From now on, when all work is done, Ctrl-C ends this process where it is."""
     signal.signal(signal.SIGINT, lambda number, frame: os._exit(EXIT_CODE))
@@ -42,6 +54,7 @@ def _watch(reading: int) -> None:
     while number := os.read(reading, 1):
         ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
         if number[0] == signal.SIGINT and ours:
+            _came.set()
             time.sleep(GRACE)
             os.write(2, b"camring: Interrupted.\n")
             os._exit(EXIT_CODE)
