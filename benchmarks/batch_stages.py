@@ -31,7 +31,8 @@ from camring.numerics.radau import STAGES
 from camring.objective.batch import designs_in_batch, measure_designs, say_of_designs
 from camring.physics import batch_cycle as cycles
 from camring.physics.cycle import Cycle
-from camring.programs.kept_program import Program, between_arrays, is_array
+from camring.programs.between_arrays import Program, between_arrays
+from camring.programs.leaves import is_array
 
 REPEATS = 25
 OPTIONS = {"xla_cpu_prefer_vector_width": 512, "xla_cpu_multi_thread_eigen": False}

@@ -19,13 +19,12 @@ import jax
 from camring.compiler.machine import made_by
 from camring.compiler.numbers import WIDTH
 from camring.compiler.program import Code, NativeProgram, NotInLanes
+from camring.programs.between_arrays import Program, between_arrays
 from camring.programs.compilation_cache import programs_folder
 from camring.programs.description import Indescribable
 from camring.programs.kept_program import (
     SUFFIX,
-    Program,
     alive,
-    between_arrays,
     completion,
     keep,
     kept_or_made,

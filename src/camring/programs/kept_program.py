@@ -30,35 +30,19 @@ import numpy as np
 from jax.experimental.serialize_executable import deserialize_and_load, serialize
 from jaxlib import lapack
 
+from camring.programs.between_arrays import Program, between_arrays, filled
 from camring.programs.compilation_cache import MAKING_SUFFIX, programs_folder
 from camring.programs.description import Indescribable, described
 from camring.programs.jax_store import jax_store_unused
 from camring.programs.kept_file import SUFFIX, content_of
 from camring.programs.kept_file import write as keep
-from camring.programs.leaves import is_array, split, whole_form
+from camring.programs.leaves import split, whole_form
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
 
 SPARING = {"xla_backend_optimization_level": 1, "xla_cpu_use_fusion_emitters": False}
 """Options of XLA under which one motor's programs compile in 75 % of the time and run as fast."""
-
-
-class _Place:
-    """Stands in a result for one of the program's arrays."""
-
-
-class Program:
-    """Machine code between lists of arrays, and the tree that its answers belong into."""
-
-    def __init__(self, call: Callable[[list[Any]], list[Any]], result: Any) -> None:
-        self._call = call
-        self._leaves, self._structure = jax.tree.flatten(result)
-
-    def __call__(self, arrays: list[Any]) -> Any:
-        answers = iter(self._call(arrays))
-        filled = [next(answers) if isinstance(leaf, _Place) else leaf for leaf in self._leaves]
-        return jax.tree.unflatten(self._structure, filled)
 
 
 class Forgetful(Protocol):
@@ -108,17 +92,15 @@ class KeptProgram(Generic[Arguments, Result]):
         alive.add(self)
 
     def __call__(self, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
-        folder = programs_folder()
         args, kwargs = self._complete(*args, **kwargs)
-        leaves, structure = jax.tree.flatten((args, kwargs))
-        found = split(leaves, whole_form) if folder else None
-        if found is None:
+        wanted = _wanted(args, kwargs)
+        if wanted is None:
             return self._traced(*args, **kwargs)
-        arrays, forms = found
-        key = structure, forms
+        key, arrays = wanted
         program = self._programs.get(key)
         if program is None:
-            program = self._found(key, Path(folder), (args, kwargs), arrays)
+            with self._lock_of(key):
+                program = self._found(key, (args, kwargs), arrays)
         return self._traced(*args, **kwargs) if program is None else program(arrays)
 
     def begin(self, *args: Any, **kwargs: Any) -> "Future[Any]":
@@ -132,57 +114,68 @@ class KeptProgram(Generic[Arguments, Result]):
         goes on alone; cancelled where there is nothing to compile, or nothing that can be kept.
         """
         shapes: Future[Any] = Future()
-        folder = programs_folder()
         args, kwargs = self._complete(*args, **kwargs)
-        leaves, structure = jax.tree.flatten((args, kwargs))
-        found = split(leaves, whole_form) if folder else None
-        if found is None:
+        wanted = _wanted(args, kwargs)
+        if wanted is None or not self._lacks(wanted[0], (args, kwargs)):
             shapes.cancel()
             return shapes
-        (arrays, forms), begun = found, threading.Event()
-        key = structure, forms
+        (key, arrays), lock = wanted, self._lock_of(wanted[0])
+        lock.acquire()
 
         def made() -> None:
-            with contextlib.suppress(Exception), contextlib.ExitStack() as stack:
-                stack.callback(begun.set)
-                stack.callback(shapes.cancel)
-                path = self._path(Path(folder), (args, kwargs))
-                stack.enter_context(self._busy.setdefault(key, threading.Lock()))
-                begun.set()
-                stack.enter_context(_one_process_at_a_time(path))
-                if key not in self._programs and not path.exists():
-                    given = args, kwargs
-                    self._programs[key] = self._compiled(path, given, arrays, shapes.set_result)
+            try:
+                with contextlib.suppress(Exception):
+                    self._found(key, (args, kwargs), arrays, shapes.set_result)
+            finally:
+                shapes.cancel()
+                lock.release()
 
         threading.Thread(target=made).start()
-        begun.wait()
         return shapes
 
     def forget(self) -> None:
         """Gives back the machine code that this process holds; what is on disk stays."""
         self._programs.clear()
 
-    def _found(self, key: Hashable, folder: Path, given: Any, arrays: list[Any]) -> Program | None:
-        """From disk, or compiled and put there; None where the program is JAX's to keep."""
-        with self._busy.setdefault(key, threading.Lock()):
-            if key in self._others:
-                return None
-            if key not in self._programs:
-                try:
-                    path = self._path(folder, given)
-                except Indescribable:
-                    self._others.add(key)
-                    return None
-                self._programs[key] = kept_or_made(
-                    path,
-                    lambda content: _shown_to_run(content, arrays),
-                    lambda: self._compiled(path, given, arrays),
-                )
-            return self._programs[key]
+    def _lock_of(self, key: Hashable) -> threading.Lock:
+        return self._busy.setdefault(key, threading.Lock())
 
-    def _path(self, folder: Path, given: Any) -> Path:
+    def _found(
+        self,
+        key: Hashable,
+        given: Any,
+        arrays: list[Any],
+        read: Callable[[Any], None] = lambda shapes: None,
+    ) -> Program | None:
+        """From disk, or compiled and put there; None where the program is JAX's to keep.
+
+        Its lock is held; `read` is told the shapes of a result that is to be compiled.
+        """
+        if key in self._others:
+            return None
+        if key not in self._programs:
+            try:
+                path = self._path(given)
+            except Indescribable:
+                self._others.add(key)
+                return None
+            self._programs[key] = kept_or_made(
+                path,
+                lambda content: _shown_to_run(content, arrays),
+                lambda: self._compiled(path, given, arrays, read),
+            )
+        return self._programs[key]
+
+    def _lacks(self, key: Hashable, given: Any) -> bool:
+        """Whether a program must be compiled and can be kept."""
+        try:
+            return key not in self._programs and not self._path(given).exists()
+        except Indescribable:
+            return False
+
+    def _path(self, given: Any) -> Path:
         name = program_name(self._function, given, (_xla_flags(), self._effort()))
-        return folder / f"{self._function.__name__}-{name}{SUFFIX}"
+        return Path(programs_folder()) / f"{self._function.__name__}-{name}{SUFFIX}"
 
     def _effort(self) -> dict[str, Any]:
         """Options for the compiler, but for those that `XLA_FLAGS` name: a user's own go first."""
@@ -195,17 +188,24 @@ class KeptProgram(Generic[Arguments, Result]):
         path: Path,
         given: Any,
         arrays: list[Any],
-        read: Callable[[Any], None] = lambda shapes: None,
+        read: Callable[[Any], None],
     ) -> Program:
         function, result = between_arrays(self._function, given)
         program = jax.jit(function).trace(arrays)
         lowered = program.lower()
-        read(Program(lambda _: program.out_info, result.tree)([]))
+        read(filled(*jax.tree.flatten(result.tree), program.out_info))
         with jax_store_unused():
             compiled = lowered.compile(compiler_options=self._effort())
         with contextlib.suppress(Exception):  # what cannot be kept is compiled once more
             keep(path, (*serialize(compiled), result.tree))
         return Program(compiled, result.tree)
+
+
+def _wanted(args: Any, kwargs: Any) -> tuple[Hashable, list[Any]] | None:
+    """What tells a program from others, and its arrays; None where a function runs as it stands."""
+    leaves, structure = jax.tree.flatten((args, kwargs))
+    found = split(leaves, whole_form) if programs_folder() else None
+    return None if found is None else ((structure, found[1]), found[0])
 
 
 def _xla_flags() -> str:
@@ -232,32 +232,6 @@ def completion(function: Callable[Arguments, Any]) -> Callable[Arguments, Any]:
         return bound.args, bound.kwargs
 
     return complete
-
-
-class ResultTree:
-    """The tree of a function's result, known once the function has been traced."""
-
-    tree: Any = None
-
-
-def between_arrays(function: Callable, given: Any) -> tuple[Callable[[list], list], ResultTree]:
-    """A function of the arrays in some arguments alone, all else being part of it.
-
-    What comes back besides it is filled in when the function is traced.
-    """
-    leaves, structure = jax.tree.flatten(given)
-    result = ResultTree()
-
-    def called(chosen: list[Any]) -> list[Any]:
-        places = iter(chosen)
-        filled = [next(places) if is_array(leaf) else leaf for leaf in leaves]
-        args, kwargs = jax.tree.unflatten(structure, filled)
-        answer = function(*args, **kwargs)
-        result.tree = jax.tree.map(lambda leaf: _Place() if is_array(leaf) else leaf, answer)
-        return [leaf for leaf in jax.tree.leaves(answer) if is_array(leaf)]
-
-    called.__name__ = function.__name__  # in JAX's logs and profiles
-    return called, result
 
 
 def program_name(function: Callable, given: Any, options: object) -> str:
