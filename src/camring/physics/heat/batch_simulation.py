@@ -31,6 +31,7 @@ from camring.physics.heat.balance import (
     missed,
     missed_and_slope,
     rise_of,
+    warmed,
     with_rise,
     with_verdict,
 )
@@ -93,8 +94,7 @@ def neighbour_batch(
 
 def _warmed(found: BatchCycle, rise: Q[Float[Array, " batch"], "K"]) -> BatchCycle:
     """With another rise, and the pressures that go with it."""
-    motor = with_rise(found.cycle.motor, rise)
-    return settled(_of(found, replace(found.cycle, motor=motor)))
+    return settled(_of(found, warmed(found.cycle, rise)))
 
 
 class _InTurns(NamedTuple):
@@ -143,8 +143,7 @@ def _left_over(
 
 def _at(found: BatchCycle, rise: Array, stages: list[Array]) -> BatchCycle:
     orbit = replace(found.cycle.orbit, stage_state=jnp.stack(stages))
-    motor = with_rise(found.cycle.motor, rise)
-    return _of(found, replace(found.cycle, motor=motor, orbit=orbit))
+    return _of(found, replace(warmed(found.cycle, rise), orbit=orbit))
 
 
 def _of(found: BatchCycle, cycle: Cycle) -> BatchCycle:
