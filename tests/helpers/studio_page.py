@@ -13,6 +13,12 @@ def until(page, script):
         page.wait_for_timeout(50)
 
 
+def answered(page, words):
+    """Asks the server for something, and waits until that and all before it is done."""
+    asked = page.evaluate(f"camringStudio.ask({words})")
+    until(page, f"camringStudio.known.now?.head.number >= {asked}")
+
+
 def value_of(page, path):
     """The number that a field shows."""
     return float(page.get_by_test_id(f"field-{path}").input_value())

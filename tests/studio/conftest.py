@@ -9,7 +9,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from studio_page import PATIENCE, until
+from studio_page import PATIENCE, answered, until
 
 RUN = "from camring.cli.app import main; main()"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "wheel_motor.toml"
@@ -76,12 +76,6 @@ def given_again(page, folder, state):
         if page.evaluate(given):
             return
         assert time.monotonic() < deadline, given
-
-
-def answered(page, words):
-    """Asks the server for something, and waits until that and all before it is done."""
-    asked = page.evaluate(f"camringStudio.ask({words})")
-    until(page, f"camringStudio.known.now?.head.number >= {asked}")
 
 
 def at_rest(page):

@@ -3,9 +3,10 @@
 from pathlib import Path
 
 import pytest
-from studio_page import PATIENCE, until
+from studio_page import PATIENCE, answered, until, value_of
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "wheel_motor.toml"
+FIELD_OF = "document.querySelector('[data-testid=\"field-{}\"]').value"
 pytestmark = pytest.mark.slow
 
 
@@ -57,10 +58,65 @@ def test_two_pages_show_the_same_motor(page, browser, address):
         slider.press("ArrowLeft")
     wanted = page.get_by_test_id("field-motor.valve_plate.shift").input_value()
     assert float(wanted) < 0
-    field = "document.querySelector('[data-testid=\"field-motor.valve_plate.shift\"]').value"
-    until(other, f"{field} === {wanted!r}")
+    until(other, f"{FIELD_OF.format('motor.valve_plate.shift')} === {wanted!r}")
     until(other, "camringStudio.known.model.unsaved")
     other.close()
+
+
+LATE = """
+const Prompt = WebSocket;
+window.WebSocket = class extends Prompt {
+  set onmessage(take) { super.onmessage = (event) => setTimeout(take, 1000, event); }
+};
+"""
+
+
+@pytest.mark.parametrize(
+    "element",
+    [
+        "slider-motor.valve_plate.shift",
+        "field-motor.valve_plate.shift",
+        "dial-shift",
+        "cam-handle-3",
+        "map-point-0",
+    ],
+)
+def test_answers_that_come_late_take_nothing_out_of_the_hand(page, browser, address, element):
+    late = browser.new_page()
+    late.set_default_timeout(1000 * PATIENCE)
+    late.add_init_script(LATE)
+    late.goto(address)
+    late.wait_for_selector("#veil", state="hidden")
+    late.get_by_test_id("cam-keep").uncheck()  # else each step of the cam scales the one before
+    held = late.get_by_test_id(element)
+
+    def shown():
+        if element.startswith(("slider", "field")):
+            return value_of(late, "motor.valve_plate.shift")
+        return float(held.get_attribute("aria-valuetext").split()[-2])
+
+    def pressed(after):
+        late.wait_for_timeout(after)
+        held.press("ArrowDown")
+
+    def all_answered():
+        late.wait_for_timeout(500)
+        answered(late, "'view', { point: 0 }")
+        late.wait_for_timeout(100)
+
+    held.focus()
+    start = shown()
+    pressed(0)
+    all_answered()
+    step = shown() - start
+    for pause in [0, 0, 0, 550, 50, 550, 50, 50, 50, 50]:
+        pressed(pause)  # some after a rest, in which what was pressed is kept
+    all_answered()
+    assert step < 0
+    assert shown() == pytest.approx(start + 11 * step)
+    fields = "JSON.stringify(camringStudio.known.model.fields)"
+    until(page, f"{fields} === {late.evaluate(fields)!r}")
+    late.close()
 
 
 def test_the_keyboard_alone_reaches_the_numbers_and_saves(page, folder):

@@ -80,11 +80,11 @@ class Actions:
 
     def _news(self, message: Mapping[str, Any], *, before: bool = False) -> Answers:
         """The motor in words for all pages, and its numbers after them."""
-        news: Answers = [("all", described(self.session))]
+        of = {"number": message.get("number", 0), "page": message.get("page", "")}
+        news: Answers = [("all", {**described(self.session), "of": of})]
         if before:
             news += [("all", each) for each in self._before()]
-        asked = {"number": message.get("number", 0), "page": message.get("page", "")}
-        self.engine.follow(lambda: self.session.asked(asked))
+        self.engine.follow(lambda: self.session.asked(of))
         return news
 
     def _before(self) -> list[Any]:
@@ -97,8 +97,8 @@ class Actions:
         try:
             self.session.commit(message)
         except InputError:
-            self._news(message)
-            self._say(described(self.session))
+            for _, news in self._news(message):
+                self._say(news)
             raise
         return self._news(message)
 

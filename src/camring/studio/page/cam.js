@@ -2,7 +2,7 @@
 
 import { slopeOf } from "./arrows.js";
 import { make, panel } from "./dom.js";
-import { ask, move } from "./link.js";
+import { ask, move, standing } from "./link.js";
 import { nudged, stepOf } from "./nudge.js";
 import { nice, significant } from "./numbers.js";
 import { known, on } from "./store.js";
@@ -30,6 +30,7 @@ export function makeCamPanel() {
   reach.addEventListener("input", () => { reachWords.textContent = reach.value; });
   keep.addEventListener("change", () => { known.keep = keep.checked; });
 
+  const hand = standing();
   let circles = [], width = 0, height = 0, scale = null, held = null;
   new ResizeObserver(() => { width = body.clientWidth; height = body.clientHeight; draw(); }).observe(body);
 
@@ -49,7 +50,7 @@ export function makeCamPanel() {
       event.preventDefault();
       circle.focus();
       circle.setPointerCapture(event.pointerId);
-      held = { k, from: event.clientY, start: known.now.arrays.controls[k], to: null };
+      held = { k, from: event.clientY, start: at(k), to: null };
       circle.classList.add("held");
       known.held = true;
     });
@@ -65,7 +66,7 @@ export function makeCamPanel() {
       if (held?.k !== k) return;
       circle.classList.remove("held");
       known.held = false;
-      if (held.to !== null) ask("commit", { grip: grip(k, held.to), label: `control value ${k + 1}` });
+      if (held.to !== null) keepAt(k, held.to);
       held = null;
     };
     circle.addEventListener("pointerup", release);
@@ -77,13 +78,21 @@ export function makeCamPanel() {
       event.preventDefault();
     });
     nudged(circle, {
-      from: () => known.now.arrays.controls[k],
+      from: () => at(k),
       by: (key, from, fine) => { const step = key === "ArrowLeft" || key === "ArrowRight" ? 0 : stepOf(key, fine, STEPS); return step ? from + step : null; },
       go: (to, stamp) => move({ grip: grip(k, to) }, stamp),
-      keep: (to) => ask("commit", { grip: grip(k, to), label: `control value ${k + 1}` }),
+      keep: (to) => keepAt(k, to),
     });
     circle.addEventListener("focus", () => tellHandle(k));
     return circle;
+  }
+
+  const at = (k) => hand.or({})[k] ?? known.now.arrays.controls[k];
+
+  function keepAt(k, to) {
+    const asked = ask("commit", { grip: grip(k, to), label: `control value ${k + 1}` });
+    hand.put({ [k]: to }, asked);
+    return asked;
   }
 
   const grip = (k, to) => ({ kind: "handle", number: k, to, reach: Number(reach.value), mirror: mirror.checked, keep: keep.checked });

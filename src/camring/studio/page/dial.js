@@ -1,9 +1,9 @@
 // The windows of the valve plate on the section's dial: drawn, dragged, and moved by keys.
 
-import { ask, move } from "./link.js";
+import { ask, move, standing } from "./link.js";
 import { grip, nudged, stepOf } from "./nudge.js";
 import { rounded, written } from "./numbers.js";
-import { known, on } from "./store.js";
+import { known } from "./store.js";
 import { colour } from "./theme.js";
 
 const GRASP = 9; // pixels around a window's edge
@@ -20,11 +20,11 @@ const DEGREE = Math.PI / 180;
 /** `places(width, height)` says where the section's circles lie; `reading` tells what is under the hand. */
 export function makeDial(picture, body, places, reading) {
   const { canvas } = picture;
-  let hover = null, held = null, focused = null, moved = {};
-  on("described", () => { moved = {}; });
+  const hand = standing();
+  let hover = null, held = null, focused = null;
 
   const field = (key) => known.model.fields.find((each) => each.path === PLATE + key);
-  const value = (key) => moved[PLATE + key] ?? known.now?.head.set?.[PLATE + key] ?? field(key)?.value ?? 0;
+  const value = (key) => hand.or({})[key] ?? known.now?.head.set?.[PLATE + key] ?? field(key)?.value ?? 0;
 
   function windows() {
     const { lobes } = known.model.motor, pitch = 2 * Math.PI / lobes;
@@ -34,11 +34,15 @@ export function makeDial(picture, body, places, reading) {
   }
 
   function go(key, degrees, stamp) {
-    moved = { [PLATE + key]: degrees * DEGREE };
     reading.textContent = `${key.replace("_", " ")} ${written(degrees)}°`;
-    move({ set: moved }, stamp);
+    const to = degrees * DEGREE;
+    hand.put({ [key]: to }, move({ set: { [PLATE + key]: to } }, stamp));
   }
-  const keep = (key, degrees) => ask("commit", { set: { [PLATE + key]: `${written(degrees)} deg` }, label: PLATE + key });
+  function keep(key, degrees) {
+    const asked = ask("commit", { set: { [PLATE + key]: `${written(degrees)} deg` }, label: PLATE + key });
+    hand.put({ [key]: degrees * DEGREE }, asked);
+    return asked;
+  }
 
   const handles = HANDLES.map(([key, label]) => {
     const handle = grip(body, { "data-testid": `dial-${key}`, "aria-label": label });

@@ -1,7 +1,7 @@
 // The envelope over speed and pressure: where limits break, and the operating points in it.
 
 import { canvasIn, hear, make, panel } from "./dom.js";
-import { ask, move } from "./link.js";
+import { ask, move, standing } from "./link.js";
 import { grip, nudged, stepOf } from "./nudge.js";
 import { cell, nearest, nice, rounded, significant, within, written } from "./numbers.js";
 import { known, on } from "./store.js";
@@ -18,10 +18,10 @@ export function makeEnvelope() {
   const picture = canvasIn(body, draw, { "data-testid": "plot-envelope", role: "application", tabindex: "0", "aria-label": "Envelope over speed and pressure; arrow keys move a cross that reads it" });
   const { canvas } = picture;
   const map = make("canvas", { width: CELLS, height: CELLS });
-  let held = null, moved = null, spots = [], handles = [], cross = null;
+  const hand = standing();
+  let held = null, spots = [], handles = [], cross = null;
 
   on("described", () => {
-    if (!held && moved?.kept) moved = null;
     while (handles.length > known.model.points.length) handles.pop().element.remove();
     while (handles.length < known.model.points.length) handles.push(handle(handles.length));
     const { model } = known, chosen = what.value || "limits";
@@ -183,8 +183,12 @@ export function makeEnvelope() {
   }
 
   function operating(k) {
+    const moved = hand.or(null);
     if (moved?.k === k) return moved.to;
-    const value = (key) => known.model.fields.find((each) => each.path === `operating_points[${k}].${key}`)?.value;
+    const value = (key) => {
+      const name = `operating_points[${k}].${key}`;
+      return known.now?.head.set?.[name] ?? known.model.fields.find((each) => each.path === name)?.value;
+    };
     return [value("speed") * 30 / Math.PI, value("supply_pressure") / 1e5];
   }
 
@@ -211,14 +215,14 @@ export function makeEnvelope() {
   function go(k, to, stamp) {
     const [speed, pressure] = to, name = `operating_points[${k}]`;
     const set = { [`${name}.speed`]: speed * Math.PI / 30, [`${name}.supply_pressure`]: pressure * 1e5 };
-    moved = { k, to, kept: false };
     reading.textContent = `${written(speed)} rpm, ${written(pressure)} bar`;
-    move({ set }, stamp);
+    hand.put({ k, to }, move({ set }, stamp));
   }
   function keep(k, [speed, pressure]) {
-    if (moved?.k === k) moved.kept = true;
     const name = `operating_points[${k}]`;
-    ask("commit", { set: { [`${name}.speed`]: `${written(speed)} rpm`, [`${name}.supply_pressure`]: `${written(pressure)} bar` }, label: `operating point ${k + 1}` });
+    const asked = ask("commit", { set: { [`${name}.speed`]: `${written(speed)} rpm`, [`${name}.supply_pressure`]: `${written(pressure)} bar` }, label: `operating point ${k + 1}` });
+    hand.put({ k, to: [speed, pressure] }, asked);
+    return asked;
   }
 
   /** Of one operating point: arrow keys along both axes, Enter shows it. */
@@ -293,12 +297,13 @@ export function makeEnvelope() {
     if (!found) return;
     const [width, height] = picture.size(), place = frame(width, height, found), [x, y] = at(event);
     const inside = [Math.min(Math.max(x, place.left), place.left + place.w), Math.min(Math.max(y, place.top), place.top + place.h)];
-    go(held.k, [Number(place.speed(inside[0]).toPrecision(3)), rounded(place.pressure(inside[1]), 1)], event.timeStamp);
+    held.to = [Number(place.speed(inside[0]).toPrecision(3)), rounded(place.pressure(inside[1]), 1)];
+    go(held.k, held.to, event.timeStamp);
   });
   const release = () => {
     if (!held) return;
     known.held = false;
-    if (moved?.k === held.k && !moved.kept) keep(held.k, moved.to);
+    if (held.to) keep(held.k, held.to);
     held = null;
   };
   canvas.addEventListener("pointerup", release);

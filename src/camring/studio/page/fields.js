@@ -2,11 +2,12 @@
 
 import { bestArrow, present, slopeOf } from "./arrows.js";
 import { byId, make, say } from "./dom.js";
-import { ask, move } from "./link.js";
+import { ask, isTold, move } from "./link.js";
 import { fromSi, rounded, step, toSi, typed, written } from "./numbers.js";
 import { known, on } from "./store.js";
 
 const OPEN = new Set(["Valve plate", "Cam shape", "Operating point 1"]);
+const REST = 450; // ms without a key after which a number is kept
 const UNITS_KEY = "camring-units";
 const chosenUnits = JSON.parse(localStorage.getItem(UNITS_KEY) ?? "{}");
 const rows = new Map();
@@ -105,6 +106,7 @@ function modeFields(model) {
 
 function makeRow(first) {
   let field = first, at = null, dirty = false;
+  let moving = false, byKeys = false, timer = 0, asked = 0; // what the hand does to it, and under which number it asked last
   const id = `f-${first.path}`;
   const name = make("label", { class: "name", for: id });
   const fault = make("div", { class: "fault", role: "alert", "data-testid": `fault-${first.path}` });
@@ -125,6 +127,7 @@ function makeRow(first) {
     input.addEventListener("input", () => { dirty = true; });
     input.addEventListener("change", () => typedIn());
     input.addEventListener("keydown", keyed);
+    input.addEventListener("blur", rest);
     top.append(input);
     if (number) {
       units = make("select", { class: "unit", "aria-label": `Unit of ${first.label}`, onchange: () => { chosenUnits[first.path] = units.value; localStorage.setItem(UNITS_KEY, JSON.stringify(chosenUnits)); show(at); ranged(); } });
@@ -132,7 +135,13 @@ function makeRow(first) {
       slider = make("input", { type: "range", "data-testid": `slider-${first.path}`, "aria-label": first.label });
       slider.addEventListener("input", (event) => slid(event));
       slider.addEventListener("change", () => letGo());
-      slider.addEventListener("keydown", (event) => { if (event.key === "Enter") { event.preventDefault(); followArrow(); } });
+      slider.addEventListener("blur", rest);
+      slider.addEventListener("pointerdown", () => { byKeys = false; });
+      slider.addEventListener("keydown", (event) => {
+        byKeys = true;
+        if (event.ctrlKey || event.metaKey || event.altKey) rest(); // undo must find it kept
+        if (event.key === "Enter") { event.preventDefault(); followArrow(); }
+      });
       arrow = make("button", { type: "button", class: "arrow", tabindex: "-1", "data-testid": `arrow-${first.path}`, onclick: followArrow });
       element.append(make("div", { class: "slide" }, slider, arrow));
     }
@@ -142,6 +151,8 @@ function makeRow(first) {
   const unit = () => field.units.find((each) => each[0] === chosenUnits[field.path]) ?? field.units[0];
   /** What stands half typed in it is nobody's to change, whatever comes from the server. */
   const typing = () => dirty && document.activeElement === input;
+  /** What the hand has set stands until the server's words hold it: an older answer takes nothing back. */
+  const mine = () => moving || !isTold(asked);
   const ends = () => [fromSi(field.low, unit()), fromSi(field.high, unit())];
 
   function update(next) {
@@ -151,7 +162,7 @@ function makeRow(first) {
     name.title = `${field.path}\n${field.meaning}`;
     input.setAttribute("aria-description", field.meaning);
     element.classList.toggle("absent", !field.written);
-    if (!typing()) {
+    if (!typing() && !mine()) {
       element.classList.remove("wrong");
       fault.textContent = "";
     }
@@ -166,12 +177,11 @@ function makeRow(first) {
       units.disabled = field.units.length < 2;
       slider.parentElement.hidden = field.low === null;
       ranged();
-      at = field.value;
-      show(at);
+      if (!mine()) show(field.value);
       if (document.activeElement !== input || field.value !== null) input.placeholder = field.written ? "" : field.example.replaceAll('"', "").split(" ")[0];
       showBounds();
       row.arrow();
-    } else if (document.activeElement !== input || input.tagName === "SELECT") {
+    } else if (!mine() && (document.activeElement !== input || input.tagName === "SELECT")) {
       input.value = field.value === null || field.value === undefined ? "" : String(field.value);
       input.placeholder = field.example.replaceAll('"', "");
     }
@@ -200,7 +210,8 @@ function makeRow(first) {
     const value = rounded(Number(slider.value), by);
     input.value = written(value);
     at = toSi(value, unit());
-    known.held = true;
+    moving = known.held = true;
+    clearTimeout(timer);
     if (field.kind === "mode") move({ grip: grip() }, event.timeStamp);
     else move({ set: { [field.path]: at } }, event.timeStamp);
   }
@@ -208,7 +219,19 @@ function makeRow(first) {
   function letGo() {
     known.held = false;
     slider.setAttribute("aria-valuetext", `${input.value} ${unit()[0]}`);
-    commit(input.value);
+    if (byKeys) soon(); else rest();
+  }
+
+  /** Presses that follow each other are one step. */
+  function soon() {
+    clearTimeout(timer);
+    timer = setTimeout(rest, REST);
+  }
+
+  /** What was moved is kept. */
+  function rest() {
+    clearTimeout(timer);
+    if (moving) commit(input.value);
   }
 
   const grip = () => ({ kind: field.mode.kind, number: field.mode.number, to: at, keep: known.keep ?? true });
@@ -216,21 +239,22 @@ function makeRow(first) {
   function typedIn() { commit(input.value); }
 
   function commit(text) {
-    dirty = false;
+    dirty = moving = false;
     text = ["text", "list"].includes(field.kind) ? text.trim() : typed(text); // a comma parts a list
     if (field.kind === "mode") {
       const value = Number(text);
       if (!Number.isFinite(value) || text === "") { refuse(text, `${field.label} is "${text}" but must be a number; give it in ${unit()[0]}.`); return; }
       at = toSi(value, unit());
-      ask("commit", { grip: grip(), label: field.label });
+      asked = ask("commit", { grip: grip(), label: field.label });
       return;
     }
     const bare = number && text !== "" && !Number.isNaN(Number(text));
     const whole = bare && unit()[0] ? `${text} ${unit()[0]}` : text;
-    ask("commit", { set: { [field.path]: whole }, label: field.label });
+    asked = ask("commit", { set: { [field.path]: whole }, label: field.label });
   }
 
   function keyed(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) { rest(); return; }
     if (event.key === "Escape") { dirty = false; show(field.value); fault.textContent = ""; element.classList.remove("wrong"); return; }
     if (!number || field.low === null || !["ArrowUp", "ArrowDown"].includes(event.key)) return;
     event.preventDefault();
@@ -241,9 +265,9 @@ function makeRow(first) {
     const value = rounded(from + (event.key === "ArrowUp" ? by : -by), step(high - low));
     input.value = written(value);
     at = toSi(value, unit());
+    moving = true;
     move(field.kind === "mode" ? { grip: grip() } : { set: { [field.path]: at } }, event.timeStamp);
-    clearTimeout(row.timer);
-    row.timer = setTimeout(() => commit(input.value), 500);
+    soon();
   }
 
   function refuse(text, sentence) {
@@ -280,8 +304,9 @@ function makeRow(first) {
   }
 
   const row = {
-    element, field, update, refuse, timer: 0, at: () => at,
-    follow(value) { if (number && document.activeElement !== slider && document.activeElement !== input) show(value); },
+    element, field, update, at: () => at,
+    refuse(text, sentence) { if (!mine()) refuse(text, sentence); }, // else it is of what has been typed over since
+    follow(value) { if (number && !mine() && document.activeElement !== slider && document.activeElement !== input) show(value); },
     arrow() {
       if (!arrow) return;
       const found = bestArrow(field.path);

@@ -10,6 +10,7 @@ const LONGEST_LOG = 4000;
 
 let socket = null;
 let number = 0;
+let told = 0, reached = 0; // newest number of this page that the words hold, that a picture's numbers hold
 let waiting = []; // what was asked for while the server was away, in its order
 let attempts = 0;
 const MOST_WAITING = 500;
@@ -19,6 +20,7 @@ export function connect() {
   socket = new WebSocket(address);
   socket.binaryType = "arraybuffer";
   socket.onopen = () => {
+    if (attempts > 0) told = reached = number; // what was not answered never will be
     tell("connected", attempts > 0);
     attempts = 0;
     const late = waiting;
@@ -33,10 +35,12 @@ export function connect() {
   socket.onmessage = (event) => {
     if (typeof event.data === "string") {
       const message = JSON.parse(event.data);
+      if (isMine(message.of)) told = Math.max(told, message.of.number);
       tell(message.type, message);
     } else {
       const message = unpacked(event.data);
       message.at = performance.now();
+      if (message.head.type === "frame") reached = Math.max(reached, told, isMine(message.head) ? message.head.number : 0);
       tell(message.head.type, message);
     }
   };
@@ -70,15 +74,28 @@ export function ask(op, words = {}) {
   return number;
 }
 
-/** A position of the hand; `pointed` is when the pointer was there. */
+/** A position of the hand; `pointed` is when the pointer was there. Its number comes back. */
 export function move(words, pointed) {
   const mine = ask("move", words);
   const now = performance.now();
   sent.set(mine, [pointed ?? now, now]);
   if (sent.size > 500) sent.delete(sent.keys().next().value);
+  return mine;
 }
 
-export const isMine = (head) => head.page === page;
+export const isMine = (head) => head?.page === page;
+
+/** Whether the motor in words holds what was asked for under a number, or why it was refused. */
+export const isTold = (asked) => asked <= told;
+
+/** Where the hand has put something: that until the server's numbers hold it, then what they say. */
+export function standing() {
+  let mine = null, asked = 0;
+  return {
+    put(value, number) { mine = value; asked = number; },
+    or: (theirs) => (asked > reached ? mine : theirs),
+  };
+}
 
 /** Notes that the picture of a position is painted; `frame` says when it came and was drawn. */
 export function painted({ head, at, drawn }) {

@@ -1,25 +1,28 @@
 // Arrow keys on what a pointer could drag, and handles over a canvas that keys can reach.
 
 import { make } from "./dom.js";
+import { standing } from "./link.js";
 
 const REST = 450; // ms without a key after which a position is kept
 
 /**
  * Each press is a position, as of a hand that drags; once the keys rest it is kept.
- * `by(key, from, fine)` gives where a key leads, or null for a key that means nothing here.
+ * `by(key, from, fine)` gives where a key leads, or null for a key that means nothing here; `keep`
+ * gives the number under which it has asked for that.
  */
 export function nudged(element, { from, by, go, keep }) {
+  const kept = standing();
   let pending = null, timer = 0;
   const rest = () => {
     clearTimeout(timer);
     if (pending === null) return;
     const to = pending;
     pending = null;
-    keep(to);
+    kept.put(to, keep(to));
   };
   element.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) { rest(); return; } // undo must find it kept
-    const to = by(event.key, pending ?? from(), event.shiftKey);
+    const to = by(event.key, pending ?? kept.or(from()), event.shiftKey);
     if (to === null) return;
     event.preventDefault();
     pending = to;
