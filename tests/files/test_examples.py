@@ -1,6 +1,7 @@
 """The examples in `examples/` run as they stand and say something true."""
 
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -15,31 +16,34 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 README = (EXAMPLES.parent / "README.md").read_text()
 
 
-def run(name):
-    done = subprocess.run(
-        [sys.executable, str(EXAMPLES / f"{name}.py")], capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+@pytest.fixture
+def run(capsys):
+    """Runs an example here, where JAX and the programs are; what it prints."""
+
+    def said(name):
+        runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
+        return capsys.readouterr().out
+
+    return said
 
 
 def numbers(text, pattern):
     return [float(found) for found in re.findall(pattern, text)]
 
 
-def test_simulate_a_motor():
+def test_simulate_a_motor(run):
     said = run("simulate_a_motor")
     assert numbers(said, r"ripple +([\d.]+) %") == [8.56, 7.98]
     assert all(88 < value < 92 for value in numbers(said, r"efficiency ([\d.]+) %"))
 
 
-def test_compare_textbook_cams():
+def test_compare_textbook_cams(run):
     ripples = numbers(run("compare_textbook_cams"), r"ripple +([\d.]+) %")
     assert len(ripples) == 4
     assert ripples[-1] == min(ripples)
 
 
-def test_sweep_valve_timing():
+def test_sweep_valve_timing(run):
     said = run("sweep_valve_timing")
     ripples, peaks = numbers(said, r"ripple +([\d.]+) %"), numbers(said, r"peak +(\d+) bar")
     assert len(ripples) == len(peaks) == 9
@@ -47,20 +51,26 @@ def test_sweep_valve_timing():
     assert peaks[-1] > peaks[0]
 
 
-def test_gradient_of_ripple():
+def test_gradient_of_ripple(run):
     changes = numbers(run("gradient_of_ripple"), r"([+-][\d.]+) points")
     assert len(changes) == read_motor_file(EXAMPLES / "wheel_motor.toml").design_space.dimension
     assert abs(changes[0]) == max(map(abs, changes)) > 1
 
 
 def test_change_weights_afterwards():
-    said = run("change_weights_afterwards")
+    """As a program of its own, which starts others."""
+    said = subprocess.run(
+        [sys.executable, str(EXAMPLES / "change_weights_afterwards.py")],
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    ).stdout
     quiet, frugal = numbers(said, r"efficiency ([\d.]+) %")
     assert frugal >= quiet
     assert "alidated" in said
 
 
-def test_measure_a_made_up_motor():
+def test_measure_a_made_up_motor(run):
     """What it prints is the table that ships beside it."""
     made = parse_measured_table(run("measure_a_made_up_motor"))
     shipped = read_measured_table(EXAMPLES / "wheel_motor_measured.csv")

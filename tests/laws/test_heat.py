@@ -140,7 +140,7 @@ def test_the_temperature_rises_with_what_is_lost(simulated):
 
 
 def test_a_motor_at_the_temperature_that_was_found_is_the_same_motor(simulated):
-    """Its oil as viscous from the start, and nothing that warms: only its ports see other oil."""
+    """Its oil as viscous from the start, in a case that stays cold: only ports see other oil."""
     case, _, metrics = simulated[0]
     thin = float(case.fluid.viscosity * case.fluid.line.ratio(metrics.case_temperature_rise))
     critical = float(case.motor.orifice.critical_flow_number)
@@ -148,8 +148,9 @@ def test_a_motor_at_the_temperature_that_was_found_is_the_same_motor(simulated):
     # The flow number of a port holds the viscosity beneath and its limit above.
     as_warm = case.changed(lambda c: c.fluid.viscosity, thin)
     as_warm = as_warm.changed(lambda c: c.motor.orifice.critical_flow_number, critical * ratio)
-    cold = Case(replace(as_warm.motor, thermal=None), replace(as_warm.fluid, line=None), case.point)
-    _, alone = run(cold, FINEST)
+    inlet = case.fluid.line.temperature
+    _, alone = run(cooled(as_warm, ambient_temperature=inlet, heat_transfer=real(1e12)), FINEST)
+    assert abs(float(alone.case_temperature_rise)) < 1e-7
     for name in ("mean_torque", "case_drain", "friction_loss", "leakage_loss", "case_heat"):
         assert float(getattr(alone, name)) == pytest.approx(float(getattr(metrics, name)), rel=1e-8)
 

@@ -48,7 +48,7 @@ def test_a_wrong_number_is_refused_beside_its_field_and_stays_there_after_a_relo
 
 
 def test_two_pages_show_the_same_motor(page, browser, address):
-    other = browser.new_page()
+    other = browser.new_page(reduced_motion="reduce")
     other.set_default_timeout(1000 * PATIENCE)
     other.goto(address)
     other.wait_for_selector("#veil", state="hidden")
@@ -82,7 +82,7 @@ window.WebSocket = class extends Prompt {
     ],
 )
 def test_answers_that_come_late_take_nothing_out_of_the_hand(page, browser, address, element):
-    late = browser.new_page()
+    late = browser.new_page(reduced_motion="reduce")
     late.set_default_timeout(1000 * PATIENCE)
     late.add_init_script(LATE)
     late.goto(address)

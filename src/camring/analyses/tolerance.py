@@ -8,6 +8,7 @@ import jax
 import numpy as np
 from jaxtyping import Float
 
+from camring.evaluation.answers import Remember, forget
 from camring.evaluation.built_motors import OBJECTIVE, RESULTS, Scatter, built, tolerances_of
 from camring.evaluation.evaluator import applied
 from camring.files.errors import CamringError
@@ -51,8 +52,14 @@ def study_tolerances(
     samples: int = USUAL_SAMPLES,
     seed: int = 0,
     say: Say = lambda sentence: None,
+    remember: Remember = forget,
 ) -> ToleranceStudy:
     """Builds the motor so many times, and takes its slopes by every tolerance.
+
+    Parameters
+    ----------
+    remember
+        Keeps the motors that are built, for a run that goes on after this one.
 
     Raises
     ------
@@ -66,7 +73,7 @@ def study_tolerances(
     slopes = _slopes(file)
     say(f"Building the motor {samples} times.")
     began = time.monotonic()
-    scatter = built(file, samples, seed)
+    scatter = built(file, samples, seed, remember=remember)
     took = time.monotonic() - began
     if not np.isfinite(scatter.nominal[OBJECTIVE]):
         raise CamringError("The motor as drawn cannot be simulated; see `camring simulate`.")

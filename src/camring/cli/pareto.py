@@ -1,12 +1,16 @@
 """`camring pareto`: what one result costs in another."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from camring.cli.options import JsonOption
+from camring.cli.unfinished import requested, work_on
 from camring.files.csv_table import Decimal, DecimalOption
+
+if TYPE_CHECKING:
+    from camring.evaluation.unfinished import Request
 
 
 def pareto(
@@ -25,18 +29,26 @@ def pareto(
     Every limit of [constraints] holds in every design. Results count as the mean of the
     operating points by their weights, stresses and other maxima at the worst of them,
     displacement of those at which no lobe idles.
-    The folder gets front.csv, front.svg and designs/.
+    The folder gets front.csv, front.svg and designs/. What was stopped goes on by the same
+    command, or by `camring resume FOLDER`.
     """
-    from camring.presentation.pareto import require_place, show, write
+    from camring.presentation.pareto import require_place
 
     require_place(out)
+    request = requested("pareto", motor, of=of, points=points, decimal=decimal.value)
+    raise typer.Exit(carry_out(request, out, as_json=json))
 
-    from camring.evaluation.progress import Spoken
-    from camring.files.motor import read_motor_file
+
+def carry_out(request: "Request", out: Path, *, as_json: bool) -> int:
+    """Also what was begun before; the exit code."""
+    from camring.evaluation.unfinished import done
+    from camring.presentation.pareto import show, write
     from camring.studies.pareto import trade_off, traded_results
 
-    names = traded_results(of)
-    with Spoken("Reading the motor file.") as say:
-        found = trade_off(read_motor_file(motor), names, points=points, say=say)
-    write(found, out, decimal)
-    raise typer.Exit(show(found, out, as_json=json))
+    given = request.options
+    names = traded_results(given["of"])
+    with work_on(request, out) as (file, remember, say):
+        found = trade_off(file, names, points=given["points"], say=say, remember=remember)
+    write(found, out, Decimal(given["decimal"]))
+    done(out)
+    return show(found, out, as_json=as_json)

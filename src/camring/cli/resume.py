@@ -9,7 +9,7 @@ from camring.cli.options import AllowOption, DaskOption, JsonOption, WorkersOpti
 
 
 def resume(
-    folder: Annotated[Path, typer.Argument(help="Folder of a study.")],
+    folder: Annotated[Path, typer.Argument(help="Folder of a study, or of what was stopped.")],
     budget: Annotated[
         int | None,
         typer.Option(min=1, help="Model evaluations in all; else that which the study began with."),
@@ -23,8 +23,22 @@ def resume(
 
     The designs that follow are the same, bit for bit, as those of a study that
     was not interrupted, whatever evaluates them. A study that has ended is checked and
-    reported again.
+    reported again. A folder of `pareto`, `robust` or `tolerance` that was stopped is filled.
     """
+    from camring.cli.unfinished import go_on
+    from camring.evaluation.unfinished import out_of, request_of
+    from camring.files.errors import InputError
+
+    request = request_of(out_of(folder))
+    if request is not None:
+        if budget is not None or workers is not None or dask is not None:
+            raise InputError(
+                "--budget, --workers and --dask",
+                f"are for a study, and {out_of(folder)} is of `camring {request.command}`",
+                "leave them out",
+            )
+        raise typer.Exit(go_on(request, out_of(folder), as_json=json))
+
     from camring.evaluation.consent import ask_at_terminal
     from camring.evaluation.executors import chosen_executor
     from camring.evaluation.progress import SearchProgress

@@ -1,12 +1,16 @@
 """`camring robust`: a design that stays good when it is built."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from camring.cli.options import JsonOption
+from camring.cli.unfinished import requested, work_on
 from camring.files.csv_table import Decimal, DecimalOption
+
+if TYPE_CHECKING:
+    from camring.evaluation.unfinished import Request
 
 
 def robust(
@@ -39,7 +43,8 @@ def robust(
 
     Each limit of [constraints] is kept at the same quantile, or mean plus standard
     deviations, as is minimised of the objective. Both designs are then built anew. The folder
-    gets robust.toml, nominal.toml, comparison.svg and the samples of both.
+    gets robust.toml, nominal.toml, comparison.svg and the samples of both. What was stopped goes
+    on by the same command, or by `camring resume FOLDER`.
     """
     from camring.files.errors import InputError
     from camring.presentation.pareto import require_place
@@ -47,27 +52,43 @@ def robust(
     if quantile is not None and sigmas is not None:
         raise InputError("--quantile", "and --sigmas exclude each other", "give one of them")
     require_place(out)
+    request = requested(
+        "robust",
+        motor,
+        quantile=quantile,
+        sigmas=sigmas,
+        samples=samples,
+        checked=checked,
+        budget=budget,
+        seed=seed,
+        decimal=decimal.value,
+    )
+    raise typer.Exit(carry_out(request, out, as_json=json))
 
-    from camring.evaluation.progress import Spoken
-    from camring.files.motor import read_motor_file
+
+def carry_out(request: "Request", out: Path, *, as_json: bool) -> int:
+    """Also what was begun before; the exit code."""
+    from camring.evaluation.unfinished import done
     from camring.presentation.robust import show, write
     from camring.search.scatter.statistic import MeanPlus, SmoothQuantile, Statistic
     from camring.studies.robust import robust_design
 
-    statistic: Statistic = (
-        MeanPlus(sigmas) if sigmas is not None else SmoothQuantile(quantile or 0.95)
-    )
-    file = read_motor_file(motor)
-    with Spoken("Reading the motor file.") as say:
+    given = request.options
+    statistic: Statistic = SmoothQuantile(given["quantile"] or 0.95)
+    if given["sigmas"] is not None:
+        statistic = MeanPlus(given["sigmas"])
+    with work_on(request, out) as (file, remember, say):
         found = robust_design(
             file,
             statistic,
             statistic,
-            samples=samples,
-            checked=checked,
-            budget=budget,
-            seed=file.search.seed if seed is None else seed,
+            samples=given["samples"],
+            checked=given["checked"],
+            budget=given["budget"],
+            seed=file.search.seed if given["seed"] is None else given["seed"],
             say=say,
+            remember=remember,
         )
-    write(found, out, decimal)
-    raise typer.Exit(show(found, out, as_json=json))
+    write(found, out, Decimal(given["decimal"]))
+    done(out)
+    return show(found, out, as_json=as_json)

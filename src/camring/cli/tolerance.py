@@ -1,12 +1,16 @@
 """`camring tolerance`: what tolerances make of a motor's results."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from camring.cli.options import JsonOption
+from camring.cli.unfinished import requested, work_on
 from camring.files.csv_table import Decimal, DecimalOption
+
+if TYPE_CHECKING:
+    from camring.evaluation.unfinished import Request
 
 
 def tolerance(
@@ -26,24 +30,34 @@ def tolerance(
 
     Every tolerance of [tolerances] is drawn from its distribution, the same in every motor's
     parts alike. How much of each result's variance comes from which tolerance is found by exact
-    slopes and by a regression on the samples.
+    slopes and by a regression on the samples. With --out, what was stopped goes on by the same
+    command, or by `camring resume FOLDER`.
     """
     from camring.presentation.pareto import require_place
 
     if out is not None:
         require_place(out)
 
+    request = requested("tolerance", motor, samples=samples, seed=seed, decimal=decimal.value)
+    raise typer.Exit(carry_out(request, out, as_json=json))
+
+
+def carry_out(request: "Request", out: Path | None, *, as_json: bool) -> int:
+    """Also what was begun before; the exit code."""
     from camring.analyses.tolerance import study_tolerances
-    from camring.evaluation.progress import Spoken
-    from camring.files.motor import read_motor_file
+    from camring.evaluation.unfinished import done
     from camring.presentation.tolerance import document, print_files, show, write
 
-    with Spoken("Reading the motor file.") as say:
-        found = study_tolerances(read_motor_file(motor), samples, seed, say=say)
-    if json:
+    given = request.options
+    with work_on(request, out) as (file, remember, say):
+        found = study_tolerances(file, given["samples"], given["seed"], say=say, remember=remember)
+    if out is not None:
+        write(found, out, Decimal(given["decimal"]))
+        done(out)
+    if as_json:
         typer.echo(document(found))
     else:
         show(found)
     if out is not None:
-        write(found, out, decimal)
-        print_files(out, as_json=json)
+        print_files(out, as_json=as_json)
+    return 0

@@ -1,15 +1,17 @@
 """Many motors built to one drawing: every result of each, with chances common to all designs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from camring.evaluation.batch import evaluate_many
+from camring.evaluation.answers import Arrays, Remember, forget
+from camring.evaluation.batch import Points, evaluate_many
 from camring.files.motor import MotorFile, missing_tolerances
 from camring.files.motor.tolerances import Tolerances
 from camring.files.quantities import Quantity
 from camring.files.result_names import quantity
+from camring.metrics.summary import Metrics
 from camring.objective.design_space import DesignSpace
 from camring.objective.point_shares import of_all_points
 from camring.physics.batch_cycle import BatchResolution
@@ -31,6 +33,7 @@ RESULTS = (
 """Results shown; `objective` stands before them."""
 
 OBJECTIVE = "objective"
+TOGETHER = 16384  # motors that are built, or remembered, at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +102,7 @@ def built(
     design: DesignSpace | None = None,
     point: Float[np.ndarray, " coordinate"] | None = None,
     resolution: BatchResolution | None = None,
+    remember: Remember = forget,
 ) -> Scatter:
     """A design of a file, built so many times within its tolerances.
 
@@ -108,6 +112,8 @@ def built(
         Which design; the given motor unless given.
     resolution
         How finely; for final results unless given.
+    remember
+        Keeps each part of the motors, for a run that goes on after this one.
     """
     tolerances = tolerances_of(file)
     chances = deviates(tolerances.kinds, count, seed)
@@ -116,15 +122,26 @@ def built(
     amounts = np.concatenate([np.zeros((1, chances.shape[1])), chances])
     points = np.concatenate([np.broadcast_to(at, (len(amounts), len(at))), amounts], axis=1)
     space = tolerances.about(design)
-    found = evaluate_many(space, file.system, file.goal, points, resolution or BatchResolution())
-    sound = np.all(np.asarray(found.faults) == 0, axis=0)
-    by_point = {
-        name: np.where(sound, np.stack([getattr(each, name) for each in found.metrics]), np.nan)
-        for name in vars(found.metrics[0])
-    }
-    results = {OBJECTIVE: np.where(sound, found.physical_objective, np.nan)}
+    names, limit_names = [each.name for each in fields(Metrics)], file.goal.constraints.names()
+
+    def part(some: Points) -> Arrays:
+        """Objective, every result of every operating point, and limits; NaN where one failed."""
+        found = evaluate_many(space, file.system, file.goal, some, resolution or BatchResolution())
+        sound = np.all(np.asarray(found.faults) == 0, axis=0)
+        numbers = (
+            np.asarray(found.physical_objective),
+            np.array([[getattr(each, name) for each in found.metrics] for name in names]),
+            np.array([found.constraints[name] for name in limit_names]).reshape(-1, len(some)),
+        )
+        return tuple(np.where(sound, each, np.nan) for each in numbers)
+
+    asked = remember("built", part)
+    parts = [asked(points[k : k + TOGETHER]) for k in range(0, len(points), TOGETHER)]
+    whole = [np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)]
+    by_point = dict(zip(names, whole[1], strict=True))
+    results = {OBJECTIVE: whole[0]}
     results |= {name: of_all_points(file.system, name, by_point[name]) for name in RESULTS}
-    limits = {name: np.where(sound, g, np.nan) for name, g in found.constraints.items()}
+    limits = dict(zip(limit_names, whole[2], strict=True))
     return Scatter(
         deviates=chances,
         nominal={name: float(values[0]) for name, values in results.items()},

@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from jaxtyping import Float
 
+from camring.evaluation.answers import Remember, forget
 from camring.evaluation.assessed import outcome_of
 from camring.evaluation.batch import evaluate_many
 from camring.evaluation.outcome import Outcome
@@ -124,6 +125,7 @@ def trade_off(
     screened: int = SCREENED,
     sample: int = 3,
     say: Say = lambda sentence: None,
+    remember: Remember = forget,
 ) -> TradeOff:
     """Trace the front of some results, and look at each of its designs again.
 
@@ -135,6 +137,8 @@ def trade_off(
         Designs evaluated side by side beforehand, for starts.
     sample
         Designs that SciPy's solver looks at.
+    remember
+        Keeps what descents ask for, for a run that goes on after this one.
 
     Raises
     ------
@@ -151,7 +155,8 @@ def trade_off(
     say(f"Screening {screened} designs for starts.")
     starts = _starts(model, screened)
     say(f"Tracing the front from {len(starts)} starts.")
-    front = trace_front(FrontProblem(model.values, model.slopes), starts, points, _counted(say))
+    problem = FrontProblem(remember("values", model.values), remember("slopes", model.slopes))
+    front = trace_front(problem, starts, points, _counted(say))
     if not front.points:
         raise NoFront(
             f"No design of {file.path} keeps every limit: none of {screened} screened ones nor of "

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from camring.evaluation.answers import Remember, forget, remembered_problem
 from camring.evaluation.built_motors import Scatter, built, tolerances_of
 from camring.evaluation.evaluator import MotorEvaluator
 from camring.evaluation.outcome import SAFETY
@@ -85,6 +86,7 @@ def robust_design(
     budget: int | None = None,
     seed: int = 0,
     say: Say = lambda sentence: None,
+    remember: Remember = forget,
 ) -> RobustDesign:
     """Finds the nominal optimum and the robust one, and builds both anew.
 
@@ -98,6 +100,8 @@ def robust_design(
         Motors of the check.
     budget
         Designs of each search; that of `[search]` unless given.
+    remember
+        Keeps what both searches ask for, for a run that goes on after this one.
 
     Raises
     ------
@@ -113,7 +117,7 @@ def robust_design(
     space, first = file.design_space, first_points(file, theory=True)
     began = time.monotonic()
     say("Looking for the nominal optimum.")
-    nominal = _nominal(file, first, budget, seed)
+    nominal = _nominal(file, first, budget, seed, remember)
     if nominal.best is None or not nominal.best.feasible():
         raise NoRobustDesign(
             f"No design of {file.path} keeps every limit as drawn; see `camring optimise`."
@@ -129,10 +133,10 @@ def robust_design(
         inside = DesignsInEnvelope(file)
         robust = EnvelopedFunction(scattering, inside)
     given = tuple(tuple(map(float, each)) for each in (nominal.best.point, *first))
-    strategy = GradientSearch(space.dimension, robust.slopes, given)
+    strategy = GradientSearch(space.dimension, remember("robust slopes", robust.slopes), given)
     limits = len(file.goal.constraints.names())
     found = minimise(
-        robust.problem(space.dimension, limits),
+        remembered_problem(remember, "robust", robust.problem(space.dimension, limits)),
         strategy,
         budget,
         seed,
@@ -165,7 +169,11 @@ def robust_design(
 
 
 def _nominal(
-    file: MotorFile, first: Float[np.ndarray, "points dimension"], budget: int, seed: int
+    file: MotorFile,
+    first: Float[np.ndarray, "points dimension"],
+    budget: int,
+    seed: int,
+    remember: Remember,
 ) -> SearchResult:
     """As `camring optimise` does, without a folder."""
     evaluator = MotorEvaluator(file.text)
@@ -177,8 +185,9 @@ def _nominal(
 
     given = tuple(tuple(map(float, each)) for each in first)
     dimension = first.shape[1]
-    strategy = GradientSearch(dimension, evaluator.slopes, given)
-    return minimise(Problem(dimension, len(names), evaluate), strategy, budget, seed)
+    strategy = GradientSearch(dimension, remember("nominal slopes", evaluator.slopes), given)
+    problem = Problem(dimension, len(names), evaluate)
+    return minimise(remembered_problem(remember, "nominal", problem), strategy, budget, seed)
 
 
 def _tell(evaluation: Evaluation, say: Say) -> None:

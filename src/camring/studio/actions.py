@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from camring.evaluation.unfinished import place_of
 from camring.files.errors import InputError
 from camring.files.motor import parse_motor_file
 from camring.files.starting.library import class_of, library, library_text
@@ -263,7 +264,8 @@ class Actions:
     def _free_folder(self, kind: str = "study") -> str:
         stem = f"{self.session.path.stem}_{kind}"
         names = (stem, *(f"{stem}_{k}" for k in range(2, 10_000)))
-        return next(name for name in names if not (self.folder / name).exists())
+        places = ((name, self.folder / name) for name in names)
+        return next(name for name, at in places if not (at.exists() or place_of(at).exists()))
 
 
 def _begun(folder: Path) -> Session:
