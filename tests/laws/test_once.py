@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from camring.numerics.once import computed_once
+from camring.numerics.compilation import computed_once
 
 AWKWARD = [np.nan, np.inf, -np.inf, 0.0, -3.0, 1e-310]
 

@@ -13,8 +13,8 @@ from jaxtyping import Array, Float
 
 from camring.geometry.cam import RadialCam
 from camring.numerics.batch import take
+from camring.numerics.compilation import computed_once
 from camring.numerics.extremum import rise_to_turn
-from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import combine, horner
 from camring.numerics.selection import larger, largest, smaller, smallest

@@ -15,6 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from camring.numerics.compilation import one_program
 from camring.numerics.quantity import Q, real
 from camring.numerics.selection import smallest
 from camring.numerics.spline import (
@@ -91,16 +92,20 @@ class RadialCam(AbstractCam):
     def control_count(self) -> int:
         return self.control_radii.shape[-1]
 
+    @one_program
     def breakpoints(self) -> Q[Float[Array, " control"], "rad"]:
         return jnp.asarray(knots(self.control_count, self.period, self.degree))
 
+    @one_program
     def mean_radius(self) -> Q[Float[Array, ""], "m"]:
         # Every basis function has the same integral.
         return jnp.mean(self.control_radii)
 
+    @one_program
     def pitch_radius(self, angle: Q[Float[Array, "*grid"], "rad"]) -> Jet:
         return evaluate_periodic(self.control_radii, angle, self.period, self.degree)
 
+    @one_program
     def pitch_radius_between(
         self,
         start: Q[Float[Array, " element"], "rad"],
@@ -154,17 +159,20 @@ class PlanarCam(AbstractCam):
         """Polar angle of a curve point, on the branch that follows the parameter."""
         return parameter + jnp.angle(point * jnp.exp(-1j * parameter))
 
+    @one_program
     def least_turning(self) -> Q[Float[Array, ""], "1"]:
         """Smallest rate of polar angle against the curve parameter; negative: not star-shaped."""
         parameter = self.period * jnp.arange(16 * self.control_count) / (16 * self.control_count)
         curve = self._curve(parameter)
         return smallest(jnp.imag(curve.first / curve.value))
 
+    @one_program
     def breakpoints(self) -> Q[Float[Array, " control"], "rad"]:
         parameter = jnp.asarray(knots(self.control_count, self.period, self.degree))
         polar = self._polar_angle(parameter, self._curve(parameter).value)
         return jnp.sort(polar % self.period)
 
+    @one_program
     def mean_radius(self) -> Q[Float[Array, ""], "m"]:
         # Gauss-Legendre between the breakpoints, where the radius is analytic.
         corners = self.breakpoints()
@@ -190,6 +198,7 @@ class PlanarCam(AbstractCam):
         # One more step from a constant carries the implicit derivative exactly.
         return newton(jax.lax.stop_gradient(parameter), None)[0]
 
+    @one_program
     def pitch_radius(self, angle: Q[Float[Array, "*grid"], "rad"]) -> Jet:
         return self._radius_at(self._parameter_at(angle))
 
@@ -215,6 +224,7 @@ class PlanarCam(AbstractCam):
             radius * (third + 3 * first * second + first**3),
         )
 
+    @one_program
     def pitch_radius_between(
         self,
         start: Q[Float[Array, " element"], "rad"],

@@ -19,8 +19,8 @@ from camring.numerics.batch import take
 from camring.numerics.batch_fourier import power_of_orders
 from camring.numerics.batch_integral import INTEGRATIONS, integrated_samples
 from camring.numerics.batch_mesh import locate_round
+from camring.numerics.compilation import computed_once
 from camring.numerics.extremum import vertex_value
-from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import horner
 from camring.numerics.selection import largest

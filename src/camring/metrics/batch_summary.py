@@ -20,8 +20,8 @@ from camring.metrics.power_balance import power_balance
 from camring.metrics.rating_life import Endured, endured
 from camring.metrics.summary import Measured, Metrics, results
 from camring.numerics.batch_extremum import highest_of_cubics, highest_of_samples
+from camring.numerics.compilation import computed_once
 from camring.numerics.extremum import vertex_value
-from camring.numerics.once import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import STAGES, combine
 from camring.numerics.selection import largest

@@ -12,7 +12,7 @@ from jaxtyping import Array, Float
 
 from camring.numerics.batch import locate, take
 from camring.numerics.batch_extremum import highest_of_cubics
-from camring.numerics.once import computed_once
+from camring.numerics.compilation import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.radau import element_powers
 from camring.numerics.selection import bounded, smaller, smallest

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, Float, Int
 
 from camring.metrics.batch_spectra import of_all_pistons, piston_around
-from camring.numerics.once import computed_once
+from camring.numerics.compilation import computed_once
 from camring.numerics.quantity import Q
 from camring.numerics.selection import smallest
 from camring.physics.batch_cycle import BatchResolution

@@ -11,9 +11,9 @@ from jaxtyping import Array, Float
 
 from camring.numerics.batch import take
 from camring.numerics.batch_mesh import locate_round
+from camring.numerics.compilation import computed_once
 from camring.numerics.fourier import INTEGRATIONS, integral
 from camring.numerics.mesh import Mesh
-from camring.numerics.once import computed_once
 from camring.numerics.radau import element_powers, horner
 
 __all__ = ["INTEGRATIONS", "integrated_samples"]

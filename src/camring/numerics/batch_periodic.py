@@ -33,10 +33,10 @@ from camring.numerics.batch_mesh import (
     follow_in_batch,
     graded_batch,
 )
+from camring.numerics.compilation import computed_once
 from camring.numerics.equation import Equation, Forcing
 from camring.numerics.mesh import Mesh, fourth_derivative_density
 from camring.numerics.newton import damped_newton
-from camring.numerics.once import computed_once
 from camring.numerics.periodic import Orbit, collocation_residual, eliminate, extent
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, element_powers, horner
 from camring.numerics.selection import larger, largest, smaller, smallest

@@ -36,6 +36,7 @@ import numpy as np
 from jax.lax import stop_gradient
 from jaxtyping import Array, Float, Int
 
+from camring.numerics.compilation import computed_once
 from camring.numerics.crossing import crossings, with_nodes_at
 from camring.numerics.equation import Equation, Forcing
 from camring.numerics.mesh import (
@@ -48,7 +49,6 @@ from camring.numerics.mesh import (
     graded_mesh,
 )
 from camring.numerics.newton import damped_newton
-from camring.numerics.once import computed_once
 from camring.numerics.radau import (
     STAGE_INTEGRALS,
     STAGES,

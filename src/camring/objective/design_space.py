@@ -13,6 +13,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Float
 
+from camring.geometry.cam import AbstractCam
+from camring.numerics.compilation import one_program
 from camring.numerics.quantity import ArrayLike, real
 from camring.objective.cam_modes import CamModes, control_values
 from camring.physics.system import System
@@ -78,10 +80,11 @@ class Variable(eqx.Module):
             system, paths, lambda given: given * (1 + reached) if self.relative else reached
         )
 
-    def locate(self, system: System) -> Float[Array, ""]:
+    def locate(self, system: System) -> Float[np.ndarray, ""]:
         """The coordinate of the given system."""
-        given = 0.0 if self.relative else leaf(self.leaves[0][0])(system)
-        return (given - self.low) / (self.high - self.low)
+        given = 0.0 if self.relative else np.asarray(leaf(self.leaves[0][0])(system))
+        low, high = np.asarray(self.low), np.asarray(self.high)
+        return (given - low) / (high - low)
 
 
 class AbstractSpace(eqx.Module):
@@ -139,8 +142,7 @@ class DesignSpace(AbstractSpace):
             Coordinates in [0, 1]; outside, the variables simply go on.
         """
         point = real(unit_point)
-        for place, variable in enumerate(self.variables):
-            system = variable.apply(system, point[place])
+        system = self._moved(system, point)
         if self.cam is None:
             return system
         cam = self.cam.apply(system.motor.cam, point[len(self.variables) :])
@@ -156,27 +158,43 @@ class DesignSpace(AbstractSpace):
         self, system: System, unit_point: Sequence[float] | Float[np.ndarray, " coordinate"]
     ) -> dict[str, DocumentValue]:
         """What a motor file of this design says: key -> SI number or list of them."""
-        design = self.apply(system, jnp.asarray(unit_point))
+        point = np.asarray(unit_point, dtype=float)
+        design = self._moved(system, point)
         values: dict[str, DocumentValue] = {
             key: float(leaf(paths[0])(design))
             for variable in self.variables
             for key, paths in zip(variable.keys, variable.leaves, strict=True)
         }
         if self.cam is not None:
+            cam = _cam_of(self.cam, design.motor.cam, point[len(self.variables) :])
+            design = eqx.tree_at(lambda each: each.motor.cam, design, cam)
             values[self.cam_key] = np.asarray(leaf(self.cam_key)(design)).tolist()
         return values
+
+    def _moved(self, system: System, point: Float[Array, " coordinate"] | np.ndarray) -> System:
+        """With all coordinates but the cam's; of plain numbers without a program."""
+        for place, variable in enumerate(self.variables):
+            system = variable.apply(system, point[place])
+        return system
 
     def describe(
         self, system: System, unit_point: Sequence[float] | Float[np.ndarray, " coordinate"]
     ) -> dict[str, float]:
         """The value of each coordinate in SI: numbers as they are, mode amplitudes in m."""
-        design = self.apply(system, jnp.asarray(unit_point))
+        design = self._moved(system, np.asarray(unit_point, dtype=float))
         values = {v.name: float(leaf(v.leaves[0][0])(design)) for v in self.variables}
         if self.cam is not None:
             modes = np.asarray(unit_point, dtype=float)[len(self.variables) :]
             amplitudes = (2 * modes - 1) * np.asarray(self.cam.bounds())
             values.update(zip(self.cam.names, amplitudes.tolist(), strict=True))
         return values
+
+
+@one_program
+def _cam_of(
+    modes: CamModes, cam: AbstractCam, unit_point: Float[np.ndarray, " coordinate"]
+) -> AbstractCam:
+    return modes.apply(cam, unit_point)
 
 
 __all__ = [

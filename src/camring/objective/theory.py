@@ -18,14 +18,16 @@ from scipy.optimize import lsq_linear
 from camring.geometry.cam import AbstractCam
 from camring.geometry.contour import pressure_angle, undercut_factor
 from camring.geometry.profiles import zero_ripple_cams
+from camring.numerics.compilation import one_program
 from camring.numerics.selection import largest, smallest
-from camring.objective.cam_modes import control_values, unit_point_for
-from camring.objective.design_space import DesignSpace
+from camring.objective.cam_modes import CamModes, control_values, unit_point_for
+from camring.objective.design_space import DesignSpace, Variable
 from camring.physics.contact import hertz_stress, normal_force
 from camring.physics.system import System
 
 HELD = 0.01  # of the range of control values: what a space may miss of a cam it "holds"
 PRE_COMPRESSION = (1.0, 0.5, 0.0)  # shares of the full angle
+_ANGLES = 2048
 _FAITHFUL = 1e-3  # pull towards the given timing where edges leave a choice
 
 
@@ -91,8 +93,7 @@ def _cam_points(
             points.append(point)
     if not points:
         return [], []
-    facts = jax.jit(jax.vmap(lambda point: _cam_facts(system, modes.apply(motor.cam, point))))
-    undercut, angle, stress = (np.asarray(each) for each in facts(jnp.array(points)))
+    undercut, angle, stress = map(np.asarray, _cams_facts(system, modes, np.array(points)))
     broken = (
         _excess(-undercut, limits.min_undercut_factor, -1)
         + _excess(angle, limits.max_pressure_angle)
@@ -101,6 +102,14 @@ def _cam_points(
     # Among cams within the limits the one with most undercut margin comes first.
     order = np.lexsort((-undercut, np.round(broken, 9)))
     return [points[place] for place in order], [bool(broken[place] < 1e-9) for place in order]
+
+
+@one_program
+def _cams_facts(
+    system: System, modes: CamModes, points: Float[np.ndarray, "cam mode"]
+) -> tuple[Array, Array, Array]:
+    """`_cam_facts` of several designs."""
+    return jax.vmap(lambda point: _cam_facts(system, modes.apply(system.motor.cam, point)))(points)
 
 
 def _excess(value: np.ndarray, limit: float | None, sign: int = 1) -> np.ndarray:
@@ -145,15 +154,7 @@ def _timing_points(system: System, space: DesignSpace) -> list[np.ndarray]:
     if count == 0:
         return [given]
 
-    def edges(point: Array) -> Array:
-        moved = system
-        for place, variable in enumerate(space.variables):
-            moved = variable.apply(moved, point[place])
-        return _window_edges(moved)
-
-    now, slope = (
-        np.asarray(each) for each in jax.jit(lambda x: (edges(x), jax.jacfwd(edges)(x)))(given)
-    )
+    now, slope = map(np.asarray, _edges_and_slopes(system, space.variables, given))
     movable = np.any(np.abs(slope) > 0, axis=0)
     points = []
     if np.any(movable):
@@ -172,6 +173,33 @@ def _timing_points(system: System, space: DesignSpace) -> list[np.ndarray]:
     return [*points, given]
 
 
+@one_program
+def _edges_and_slopes(
+    system: System, variables: tuple[Variable, ...], point: Float[np.ndarray, " variable"]
+) -> tuple[Array, Array]:
+    """Of the windows at a point, and by each coordinate."""
+
+    def edges(point: Array) -> Array:
+        moved = system
+        for place, variable in enumerate(variables):
+            moved = variable.apply(moved, point[place])
+        return _window_edges(moved)
+
+    at = jnp.asarray(point)
+    return edges(at), jax.jacfwd(edges)(at)
+
+
+@one_program
+def _commutation(system: System) -> tuple[Array, Array, Array, Array]:
+    """Pitch radius over a pitch, every drop, the oil's modulus at mean pressure, piston area."""
+    motor, points = system.motor, system.operating_points
+    angles = motor.valve_plate.pitch * jnp.arange(_ANGLES) / _ANGLES
+    drops = jnp.stack([each.pressure_drop for each in points])
+    mean = jnp.mean(jnp.stack([each.supply_pressure for each in points]))
+    radius = motor.cam.pitch_radius(angles).value
+    return radius, drops, system.fluid.bulk_modulus_at(mean), motor.piston.area
+
+
 def ideal_edges(system: System, share: float) -> Float[np.ndarray, " edge"]:
     """Opening and closing of supply and return for ideal commutation, rad.
 
@@ -185,18 +213,12 @@ def ideal_edges(system: System, share: float) -> Float[np.ndarray, " edge"]:
     to be pressed together or let expand, at the mean pressure drop of the
     operating points.
     """
-    motor, fluid = system.motor, system.fluid
-    cam = motor.cam
-    pitch = motor.valve_plate.pitch
-    angles = pitch * np.arange(2048) / 2048
-    radius = np.asarray(jax.jit(lambda at: cam.pitch_radius(at).value)(angles))
-    inner, outer = angles[np.argmin(radius)], angles[np.argmax(radius)]
+    pitch, dead = system.motor.valve_plate.pitch, float(system.motor.dead_volume)
+    angles = pitch * np.arange(_ANGLES) / _ANGLES
+    radius, drops, modulus, area = map(np.asarray, _commutation(system))
     # Where it brakes, the high pressure comes from the return: nothing is gained by closing early.
-    drops = [max(float(point.pressure_drop), 0.0) for point in system.operating_points]
-    drop = float(np.mean(drops))
-    mean = float(np.mean([float(point.supply_pressure) for point in system.operating_points]))
-    modulus = float(fluid.bulk_modulus_at(jnp.asarray(mean)))
-    area, dead = float(motor.piston.area), float(motor.dead_volume)
+    drop = float(np.mean([max(float(each), 0.0) for each in drops]))
+    inner, outer = angles[np.argmin(radius)], angles[np.argmax(radius)]
     stroke = float(np.ptp(radius))
 
     def ahead(centre: float, volume: float) -> float:

@@ -25,9 +25,9 @@ from camring.numerics.batch_periodic import (
     solve_periodic_batch,
     step_batch,
 )
+from camring.numerics.compilation import computed_once
 from camring.numerics.equation import Equation
 from camring.numerics.mesh import LAYER_ELEMENTS
-from camring.numerics.once import computed_once
 from camring.numerics.periodic import Orbit
 from camring.numerics.quantity import Q
 from camring.numerics.radau import STAGES

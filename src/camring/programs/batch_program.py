@@ -160,7 +160,11 @@ def _form_in_batch(array: Any) -> Hashable:
 
 
 def _one_design(leaf: Any) -> Any:
-    return leaf[..., :1] if is_array(leaf) and leaf.ndim else leaf
+    if not (is_array(leaf) and leaf.ndim):
+        return leaf
+    form = getattr(leaf, "aval", leaf)
+    weak = getattr(form, "weak_type", False)
+    return jax.ShapeDtypeStruct((*form.shape[:-1], 1), form.dtype, weak_type=weak)
 
 
 def _restored(content: Any) -> Program:

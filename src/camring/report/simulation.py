@@ -3,14 +3,17 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array
 
 from camring.analyses.simulation import Simulated
+from camring.geometry.cam import AbstractCam
 from camring.geometry.contour import pitch_curvature, pressure_angle, undercut_factor
+from camring.geometry.piston import Roller
+from camring.geometry.valve_plate import ValvePlate
 from camring.metrics.spectrum import order_spectrum
 from camring.metrics.starting import Starting
+from camring.numerics.quantity import real
 from camring.physics.cycle import Cycle
 from camring.physics.motor import Motor
 from camring.physics.operating_point import OperatingPoint
@@ -68,19 +71,30 @@ def _angles(motor: Motor) -> np.ndarray:
 
 def _inside(angle: np.ndarray) -> Array:
     """The angles at which to read: the last a hair early, where this period's jerk still holds."""
-    return jnp.asarray(np.append(angle[:-1], angle[-1] * (1 - 1e-9)))
+    return real(np.append(angle[:-1], angle[-1] * (1 - 1e-9)))
 
 
 def _profile(motor: Motor, angle: np.ndarray) -> Profile:
-    radius = motor.cam.pitch_radius(_inside(angle))
-    return Profile(
-        angle,
-        np.asarray(radius.value),
-        np.asarray(radius.first),
-        np.asarray(pitch_curvature(radius)),
-        np.asarray(pressure_angle(radius)),
-        np.asarray(undercut_factor(radius, motor.roller.radius)),
+    return Profile(angle, *map(np.asarray, _shape(motor.cam, motor.roller, _inside(angle))))
+
+
+@motor_program
+def _shape(cam: AbstractCam, roller: Roller, angle: Array) -> tuple[Array, ...]:
+    """Pitch radius, its slope, curvature of the pitch curve, pressure angle, undercut factor."""
+    radius = cam.pitch_radius(angle)
+    return (
+        radius.value,
+        radius.first,
+        pitch_curvature(radius),
+        pressure_angle(radius),
+        undercut_factor(radius, roller.radius),
     )
+
+
+@motor_program
+def _openings(plate: ValvePlate, angle: Array) -> tuple[Array, Array]:
+    """Of the supply's and of the return's port, shares of the area."""
+    return plate.opening(plate.supply, angle), plate.opening(plate.return_, angle)
 
 
 @motor_program
@@ -102,6 +116,7 @@ def _numbers(cycle: Cycle, harmonics: int) -> dict[str, float]:
 def _result(cycle: Cycle, angle: np.ndarray, harmonics: int, error: float) -> Result:
     plate, inside = cycle.motor.valve_plate, _inside(angle)
     waves = waveforms(cycle, inside)
+    supply_opening, return_opening = map(np.asarray, _openings(plate, inside))
     torque, flow = map(np.asarray, _by_order(cycle, harmonics))
     return Result(
         point=point_of(cycle.point),
@@ -109,8 +124,8 @@ def _result(cycle: Cycle, angle: np.ndarray, harmonics: int, error: float) -> Re
         waves=Waves(
             angle=angle,
             **{name: np.asarray(getattr(waves, name)) for name in _WAVES},
-            supply_opening=np.asarray(plate.opening(plate.supply, inside)),
-            return_opening=np.asarray(plate.opening(plate.return_, inside)),
+            supply_opening=supply_opening,
+            return_opening=return_opening,
         ),
         orders=cycle.motor.cam.repeats * np.arange(1, len(torque) + 1),
         torque_amplitudes=torque,

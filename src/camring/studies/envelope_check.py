@@ -10,7 +10,6 @@ from concurrent.futures import Future
 from dataclasses import dataclass, replace
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Bool, Float
 
@@ -18,11 +17,13 @@ from camring.evaluation.envelope_batch import AtPoints, at_points
 from camring.evaluation.envelope_outcome import EnvelopeGoal
 from camring.files.motor import MotorFile
 from camring.metrics.summary import Metrics
+from camring.numerics.quantity import real
 from camring.objective.envelope import names_against_given, names_in_envelope
-from camring.objective.objective import Goal, assessment_of
+from camring.objective.objective import Goal
 from camring.physics.envelope import Envelope, EnvelopeGrid
 from camring.physics.oil.fluid import AbstractFluid
 from camring.physics.system import System
+from camring.programs.compiled import assess_metrics
 from camring.reference import NoSecondSolver, NotStarShapedError, OrbitError
 from camring.studies.envelope_grid import BOTH_WAYS, ONE_WAY, usual_envelope
 from camring.studies.reference_processes import SecondSolver
@@ -204,11 +205,11 @@ def _worst_limit(
     """The limit with the least margin by the second solver's results at one point."""
     ours = {name: values[place] for name, values in vars(check.motors[-1].metrics).items()}
     both = all_results(ours, results)
-    metrics = Metrics(**{name: jnp.asarray(value) for name, value in both.items()})
+    metrics = Metrics(**{name: real(value) for name, value in both.items()})
     here = System(
         system.motor, _fluid_at(check, system, place), (check.grid.operating_point(place),)
     )
-    assessed = jax.device_get(assessment_of(here, goal.goal, (metrics,), jnp.zeros(1, int)))
+    assessed = jax.device_get(assess_metrics(here, goal.goal, (metrics,)))
     names = names_in_envelope(goal.goal.constraints)
     limits = {name: np.array([assessed.constraints[name]]) for name in names}
     alone = AtPoints(check.grid, limits, metrics, np.zeros(1, int))

@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 
 from camring.evaluation.assessed import outcome_of
@@ -23,9 +22,9 @@ from camring.files.motor import MotorFile
 from camring.files.quantities import QUANTITIES
 from camring.metrics.result_scale import RIPPLES, scale_of
 from camring.metrics.summary import Metrics
-from camring.objective.objective import assessment_of
+from camring.numerics.quantity import real
 from camring.physics.resolution import Resolution
-from camring.programs.compiled import assess
+from camring.programs.compiled import assess, assess_metrics
 from camring.reference import NoSecondSolver, NotStarShapedError, OrbitError, machine_of
 from camring.studies.envelope_check import EnvelopeCheck
 from camring.studies.envelope_words import document_of, range_in_words
@@ -124,12 +123,11 @@ def begin_again(motor_file: MotorFile, second: SecondSolver) -> Callable[[], dic
         except (NoSecondSolver, OrbitError, NotStarShapedError) as error:
             return {FINER: finer, INDEPENDENT: failed(str(error))}
         metrics = tuple(
-            Metrics(**{name: jnp.asarray(each) for name, each in all_results(a, b).items()})
+            Metrics(**{name: real(each) for name, each in all_results(a, b).items()})
             for a, b in zip(finer.results, results, strict=True)
         )
-        sound = jnp.zeros(len(metrics), int)
         known = [{*each, *GEOMETRY_ALONE} for each in results]
-        independent = outcome_of(assessment_of(system, goal, metrics, sound))
+        independent = outcome_of(assess_metrics(system, goal, metrics))
         return {FINER: finer, INDEPENDENT: independent.with_results_in(known)}
 
     return seen

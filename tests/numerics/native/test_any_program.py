@@ -16,7 +16,7 @@ from machine_code import LANES, assert_same, rows
 
 from camring.compiler.graph import NotInLanes
 from camring.numerics.batch import take
-from camring.numerics.once import computed_once
+from camring.numerics.compilation import computed_once
 
 ROWS = (1, 4, 6, 12)
 MATRICES = {

@@ -17,7 +17,7 @@ from camring.numerics.batch import (
     running_total,
     take,
 )
-from camring.numerics.once import computed_once
+from camring.numerics.compilation import computed_once
 
 MATRIX = np.random.default_rng(9).normal(size=(11, 7))
 VIEWS = {

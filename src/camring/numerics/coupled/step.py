@@ -18,9 +18,9 @@ import jax.numpy as jnp
 from jax.lax import stop_gradient
 from jaxtyping import Array, Float
 
+from camring.numerics.compilation import computed_once
 from camring.numerics.equation import Forcing
 from camring.numerics.mesh import Mesh
-from camring.numerics.once import computed_once
 from camring.numerics.periodic import extent
 from camring.numerics.radau import STAGE_INTEGRALS, STAGES, combine, solve_stages
 from camring.numerics.selection import larger, largest

@@ -11,7 +11,7 @@ import jax.numpy as jnp
 from jax.lax import stop_gradient
 from jaxtyping import Array, Bool, Float, Int
 
-from camring.numerics.once import computed_once
+from camring.numerics.compilation import computed_once
 from camring.numerics.quantity import Q
 from camring.physics.batch_cycle import (
     BatchCycle,
