@@ -110,13 +110,16 @@ def assert_differences(
 
 def oil_left_over(cycle) -> float:
     """What of the mean flow that comes in neither goes out nor leaks, as a share of it."""
+    into, out, lost = map(float, _mean_flows(cycle))
+    return (into + out - lost) / into
+
+
+@eqx.filter_jit
+def _mean_flows(cycle):
     samples = quadrature_samples(cycle)
     piston = samples.piston
-    into, out, lost = (
-        float(samples.mean(flow))
-        for flow in (piston.supply_flow, piston.return_flow, piston.leakage_flow)
-    )
-    return (into + out - lost) / into
+    flows = piston.supply_flow, piston.return_flow, piston.leakage_flow
+    return [samples.mean(flow) for flow in flows]
 
 
 waveforms_of = eqx.filter_jit(waveforms)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -110,6 +111,12 @@ def some_chambers(motor):
     return angle, chamber_at(motor, reference_radius(motor), angle, radius)
 
 
+@eqx.filter_jit
+def slope_at(motor, fluid, point, angle, pressure):
+    ours = chamber_at(motor, reference_radius(motor), angle, motor.cam.pitch_radius(angle))
+    return pressure_slope(motor, fluid, point, ours, jnp.full(len(angle), pressure))
+
+
 def test_the_chambers_pressure_rises_as_the_second_solver_writes_it():
     """At one pressure all round a revolution: no orbit, only both writings of the laws."""
     case = half_case(1)
@@ -118,10 +125,8 @@ def test_the_chambers_pressure_rises_as_the_second_solver_writes_it():
     motor = in_mode(case.motor, case.point.idle_lobes)
     edges = chamber.edges
     angle = (edges[:-1] + edges[1:]) / 2
-    radius = motor.cam.pitch_radius(jnp.asarray(angle))
-    ours = chamber_at(motor, reference_radius(motor), jnp.asarray(angle), radius)
     pressure = float(case.point.return_pressure) + 3e6
-    found = pressure_slope(motor, case.fluid, case.point, ours, jnp.full(len(angle), pressure))
+    found = slope_at(motor, case.fluid, case.point, jnp.asarray(angle), pressure)
     shift = machine.return_pressure
     state = chamber.state(pressure, shift)
     expected = []

@@ -215,7 +215,8 @@ def ideal_edges(system: System, share: float) -> Float[np.ndarray, " edge"]:
     """
     pitch, dead = system.motor.valve_plate.pitch, float(system.motor.dead_volume)
     angles = pitch * np.arange(_ANGLES) / _ANGLES
-    radius, drops, modulus, area = map(np.asarray, _commutation(system))
+    radius, drops, *numbers = map(np.asarray, _commutation(system))
+    modulus, area = map(float, numbers)
     # Where it brakes, the high pressure comes from the return: nothing is gained by closing early.
     drop = float(np.mean([max(float(each), 0.0) for each in drops]))
     inner, outer = angles[np.argmin(radius)], angles[np.argmax(radius)]
