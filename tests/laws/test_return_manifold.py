@@ -211,7 +211,7 @@ class TestBeside:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "share", "strokes"), [(0, 0.05, 0.5), (1, 0.1, 3), (3, 0.2, 1)])
+@pytest.mark.parametrize(("seed", "share", "strokes"), [(0, 0.05, 0.5), (3, 0.2, 1)])
 def test_the_detailed_motor_draws_masses_and_gives_them_back(seed, share, strokes):
     """Air in the oil and in both manifolds, notched ports, an orifice that bends at zero."""
     case = with_manifold(detailed_case(seed, RADIAL), share, strokes)

@@ -83,7 +83,7 @@ def test_along_random_directions_at_many_designs():
             )
 
     errors, doubts = [], []
-    for point in random.uniform(0.1, 0.9, (100, space.dimension)):
+    for point in random.uniform(0.1, 0.9, (60, space.dimension)):
         way = random.normal(size=space.dimension)
         way /= np.linalg.norm(way)
         found = exact(space, system, goal, point)

@@ -29,6 +29,7 @@ def test_a_minimum_on_an_active_constraint_takes_fewer_evaluations_than_by_a_sim
     assert quadratic < 50
 
 
+@pytest.mark.long
 def test_ten_variables_under_eight_limits_are_brought_to_the_published_minimum(g07):
     """Hock and Schittkowski (1981), problem 113, from a point that keeps none of its limits."""
     best = minimise(g07, Cobyqa(10, start=(0.6,) * 10, step=0.2), 120, seed=0).best
