@@ -158,6 +158,20 @@ def test_two_at_one_place_do_not_mix(tmp_path):
             Unfinished(tmp_path / "out", REQUEST)
 
 
+def test_who_comes_second_takes_nothing_from_who_came_first(tmp_path):
+    with Unfinished(tmp_path / "out", REQUEST) as first:
+
+        def both(at):
+            first.remember("odd", odd)(at)
+            return odd(at)
+
+        with pytest.raises(InputError, match="in use by another process"):
+            run(tmp_path / "out", both)  # begun before there was a file
+        first.remember("odd", odd)(np.full(1, 3.0))
+    with Unfinished(tmp_path / "out", REQUEST) as again:
+        assert again.known == 2
+
+
 def test_a_disk_that_takes_no_more_costs_the_memory_and_not_the_work(tmp_path, monkeypatch):
     whole = run(tmp_path / "whole", odd)
     place = tmp_path / "gone"

@@ -95,12 +95,13 @@ class Unfinished:
         return self
 
     def __exit__(self, kind: type | None, error: BaseException | None, trace: object) -> None:
-        if self._connection is not None:
-            self._connection.close()
-            self._connection = None
+        if self._connection is None:
+            return  # what may lie there is another's
+        self._connection.close()
+        self._connection = None
         if isinstance(error, CamringError) and not isinstance(error, Interrupted):
             done(self._out)
-        if isinstance(error, KeyboardInterrupt) and self.place.exists():
+        if isinstance(error, KeyboardInterrupt):
             raise Interrupted(
                 f"Stopped, with what was computed kept in {printable(self.place)}; "
                 f"`camring resume {self._out}` goes on."
@@ -152,6 +153,9 @@ class Unfinished:
         try:
             yield
         except sqlite3.DatabaseError as error:
+            if self._connection is not None:
+                self._connection.close()
+                self._connection = None
             raise _unreadable(self.place, error) from error
 
 
