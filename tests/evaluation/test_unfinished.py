@@ -183,11 +183,11 @@ def test_a_disk_that_takes_no_more_costs_the_memory_and_not_the_work(tmp_path, m
 
 def test_evaluations_of_a_search_come_back_as_they_were(tmp_path):
     given = [(0.5, np.array([-1.0, ODD[0]]), 0.25, None), (np.nan, np.full(2, np.nan), 1.0, "why")]
-    told = Problem(1, 2, lambda points: [given[int(points[0, 0])]])
+    searched = Problem(1, 2, lambda points: [given[int(points[0, 0])]])
     points = np.array([[0.0], [1.0]])
-    for again in (told, Problem(1, 2, lambda points: pytest.fail("computed again"))):
+    for again in (searched, Problem(1, 2, lambda points: pytest.fail("computed again"))):
         with Unfinished(tmp_path / "out", REQUEST) as work:
-            found = remembered_problem(work.remember, "told", again).evaluate(points)
+            found = remembered_problem(work.remember, "searched", again).evaluate(points)
         for mine, theirs in zip(found, given, strict=True):
             np.testing.assert_array_equal(mine[1], theirs[1])
             assert repr(mine[0::2]) == repr(theirs[0::2])

@@ -11,6 +11,7 @@ from camring.files.csv_table import Decimal, DecimalOption
 
 if TYPE_CHECKING:
     from camring.evaluation.unfinished import Request
+    from camring.files.motor import MotorFile
 
 
 def pareto(
@@ -35,11 +36,11 @@ def pareto(
     from camring.presentation.pareto import require_place
 
     require_place(out)
-    request = requested("pareto", motor, of=of, points=points, decimal=decimal.value)
-    raise typer.Exit(carry_out(request, out, as_json=json))
+    request, file = requested("pareto", motor, of=of, points=points, decimal=decimal.value)
+    raise typer.Exit(carry_out(request, file, out, as_json=json))
 
 
-def carry_out(request: "Request", out: Path, *, as_json: bool) -> int:
+def carry_out(request: "Request", file: "MotorFile", out: Path, *, as_json: bool) -> int:
     """Also what was begun before; the exit code."""
     from camring.evaluation.unfinished import done
     from camring.presentation.pareto import show, write
@@ -47,7 +48,7 @@ def carry_out(request: "Request", out: Path, *, as_json: bool) -> int:
 
     given = request.options
     names = traded_results(given["of"])
-    with work_on(request, out) as (file, remember, say):
+    with work_on(request, out) as (remember, say):
         found = trade_off(file, names, points=given["points"], say=say, remember=remember)
     write(found, out, Decimal(given["decimal"]))
     done(out)

@@ -11,6 +11,7 @@ from camring.files.csv_table import Decimal, DecimalOption
 
 if TYPE_CHECKING:
     from camring.evaluation.unfinished import Request
+    from camring.files.motor import MotorFile
 
 
 def robust(
@@ -52,7 +53,7 @@ def robust(
     if quantile is not None and sigmas is not None:
         raise InputError("--quantile", "and --sigmas exclude each other", "give one of them")
     require_place(out)
-    request = requested(
+    request, file = requested(
         "robust",
         motor,
         quantile=quantile,
@@ -63,10 +64,10 @@ def robust(
         seed=seed,
         decimal=decimal.value,
     )
-    raise typer.Exit(carry_out(request, out, as_json=json))
+    raise typer.Exit(carry_out(request, file, out, as_json=json))
 
 
-def carry_out(request: "Request", out: Path, *, as_json: bool) -> int:
+def carry_out(request: "Request", file: "MotorFile", out: Path, *, as_json: bool) -> int:
     """Also what was begun before; the exit code."""
     from camring.evaluation.unfinished import done
     from camring.presentation.robust import show, write
@@ -77,7 +78,7 @@ def carry_out(request: "Request", out: Path, *, as_json: bool) -> int:
     statistic: Statistic = SmoothQuantile(given["quantile"] or 0.95)
     if given["sigmas"] is not None:
         statistic = MeanPlus(given["sigmas"])
-    with work_on(request, out) as (file, remember, say):
+    with work_on(request, out) as (remember, say):
         found = robust_design(
             file,
             statistic,

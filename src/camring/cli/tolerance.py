@@ -11,6 +11,7 @@ from camring.files.csv_table import Decimal, DecimalOption
 
 if TYPE_CHECKING:
     from camring.evaluation.unfinished import Request
+    from camring.files.motor import MotorFile
 
 
 def tolerance(
@@ -38,18 +39,18 @@ def tolerance(
     if out is not None:
         require_place(out)
 
-    request = requested("tolerance", motor, samples=samples, seed=seed, decimal=decimal.value)
-    raise typer.Exit(carry_out(request, out, as_json=json))
+    request, file = requested("tolerance", motor, samples=samples, seed=seed, decimal=decimal.value)
+    raise typer.Exit(carry_out(request, file, out, as_json=json))
 
 
-def carry_out(request: "Request", out: Path | None, *, as_json: bool) -> int:
+def carry_out(request: "Request", file: "MotorFile", out: Path | None, *, as_json: bool) -> int:
     """Also what was begun before; the exit code."""
     from camring.analyses.tolerance import study_tolerances
     from camring.evaluation.unfinished import done
     from camring.presentation.tolerance import document, print_files, show, write
 
     given = request.options
-    with work_on(request, out) as (file, remember, say):
+    with work_on(request, out) as (remember, say):
         found = study_tolerances(file, given["samples"], given["seed"], say=say, remember=remember)
     if out is not None:
         write(found, out, Decimal(given["decimal"]))

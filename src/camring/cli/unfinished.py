@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from camring.files.motor import MotorFile
 
 
-def requested(command: str, motor: Path, **options: Any) -> "Request":
+def requested(command: str, motor: Path, **options: Any) -> "tuple[Request, MotorFile]":
     """A command as it was given, with the motor file as it is now.
 
     Raises
@@ -23,39 +23,40 @@ def requested(command: str, motor: Path, **options: Any) -> "Request":
     from camring.evaluation.unfinished import Request
     from camring.files.motor import read_motor_file
 
-    return Request(command, read_motor_file(motor).text, str(motor), options)
+    file = read_motor_file(motor)
+    return Request(command, file.text, str(motor), options), file
 
 
 @contextmanager
 def work_on(
     request: "Request", out: Path | None
-) -> "Iterator[tuple[MotorFile, Remember, Callable[[str], None]]]":
-    """Its motor file, who remembers its answers, and who says how far it is; see `Unfinished`."""
+) -> "Iterator[tuple[Remember, Callable[[str], None]]]":
+    """Who remembers its answers, and who says how far it is; see `Unfinished`."""
     from camring.evaluation.answers import forget
-    from camring.evaluation.progress import Spoken
+    from camring.evaluation.progress import SIMULATING, Spoken
     from camring.evaluation.unfinished import Unfinished
-    from camring.files.motor import parse_motor_file
 
-    file = parse_motor_file(request.motor, Path(request.path))
-    with Spoken("Reading the motor file.") as say:
+    with Spoken(SIMULATING) as say:
         if out is None:
-            yield file, forget, say
+            yield forget, say
             return
         with Unfinished(out, request) as work:
             if work.known:
                 say(f"Going on with what {work.place.name} holds: {work.known} answers.")
-            yield file, work.remember, say
+            yield work.remember, say
 
 
 def go_on(request: "Request", out: Path, *, as_json: bool) -> int:
     """Ends what a command has begun; the exit code."""
     from camring.evaluation.unfinished import done
+    from camring.files.motor import parse_motor_file
     from camring.files.visible import say
 
     if out.exists():  # it was stopped at its very end
         done(out)
         say(f"{out} stands whole; there is nothing left to do.", err=as_json)
         return 0
+    file = parse_motor_file(request.motor, Path(request.path))
     carry_out: Callable[..., int]
     carry_out = import_module(f"camring.cli.{request.command}").carry_out
-    return carry_out(request, out, as_json=as_json)
+    return carry_out(request, file, out, as_json=as_json)

@@ -9,16 +9,18 @@ from jaxtyping import Float
 from camring.search.problem import Outputs, Points, Problem
 
 Arrays: TypeAlias = tuple[np.ndarray, ...]
-Question = TypeVar("Question", bound=Callable[[np.ndarray], Arrays])
+Answer = TypeVar("Answer", bound=Arrays)
 
 
 class Remember(Protocol):
     """The function of that name which computes nothing twice, not even in another process."""
 
-    def __call__(self, name: str, function: Question, /) -> Question: ...
+    def __call__(
+        self, name: str, function: Callable[[np.ndarray], Answer], /
+    ) -> Callable[[np.ndarray], Answer]: ...
 
 
-def forget(name: str, function: Question) -> Question:
+def forget(name: str, function: Callable[[np.ndarray], Answer]) -> Callable[[np.ndarray], Answer]:
     """Where nothing is kept."""
     return function
 

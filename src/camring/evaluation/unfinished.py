@@ -12,14 +12,14 @@ import json
 import os
 import sqlite3
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
-from camring.evaluation.answers import Arrays, Question
+from camring.evaluation.answers import Answer, Arrays
 from camring.evaluation.interrupt import Interrupted
 from camring.files.errors import CamringError, InputError
 from camring.files.motor.document import printable
@@ -107,20 +107,22 @@ class Unfinished:
                 f"`camring resume {self._out}` goes on."
             ) from error
 
-    def remember(self, name: str, function: Question) -> Question:
+    def remember(
+        self, name: str, function: Callable[[np.ndarray], Answer]
+    ) -> Callable[[np.ndarray], Answer]:
         """The function, of which every answer is kept; as `evaluation.answers.Remember`."""
 
-        def asked(at: np.ndarray) -> Arrays:
+        def asked(at: np.ndarray) -> Answer:
             question = _digest(name.encode(), str((at.dtype, at.shape)).encode(), at.tobytes())
             with self._busy:  # searches ask from threads of their own
-                known = self._answer(question)
+                known = cast(Answer | None, self._answer(question))  # arrays as they were kept
             if known is None:
                 known = function(at)
                 with self._busy:
                     self._keep(question, known)
             return known
 
-        return asked  # type: ignore[return-value]
+        return asked
 
     def _answer(self, question: bytes) -> Arrays | None:
         """None where there is none, or none that is what was kept."""

@@ -1,4 +1,4 @@
-"""What the compiler has to be told: what to store, and what is one program."""
+"""What the compiler must know: what to store, and what is one program."""
 
 from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar
@@ -17,7 +17,7 @@ def one_program(function: Callable[Arguments, Result]) -> Callable[Arguments, Re
     """The function, compiled whole where it is called by itself, on numbers.
 
     JAX would compile each of its operations, of which a spline has thirty, for every shape of
-    arrays: some 15 ms each, and 30 the first time. Within a traced function nothing is changed:
+    arrays, some hundredths of a second each. Within a traced function nothing is changed:
     the operations stand there as if the function were not marked.
     """
     jitted: Any = eqx.filter_jit  # its types know no options of `jax.jit`

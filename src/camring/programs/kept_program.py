@@ -149,7 +149,7 @@ class KeptProgram(Generic[Arguments, Result]):
     ) -> Program | None:
         """From disk, or compiled and put there; None where the program is JAX's to keep.
 
-        Its lock is held; `read` is told the shapes of a result that is to be compiled.
+        Its lock is held; `read` is given the shapes of a result that is to be compiled.
         """
         if key in self._others:
             return None

@@ -2,7 +2,7 @@
 
 import { bestArrow, present, slopeOf } from "./arrows.js";
 import { byId, make, say } from "./dom.js";
-import { ask, isTold, move } from "./link.js";
+import { ask, isAcknowledged, move } from "./link.js";
 import { fromSi, rounded, step, toSi, typed, written } from "./numbers.js";
 import { known, on } from "./store.js";
 
@@ -152,7 +152,7 @@ function makeRow(first) {
   /** What stands half typed in it is nobody's to change, whatever comes from the server. */
   const typing = () => dirty && document.activeElement === input;
   /** What the hand has set stands until the server's words hold it: an older answer takes nothing back. */
-  const mine = () => moving || !isTold(asked);
+  const mine = () => moving || !isAcknowledged(asked);
   const ends = () => [fromSi(field.low, unit()), fromSi(field.high, unit())];
 
   function update(next) {

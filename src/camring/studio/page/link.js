@@ -10,7 +10,7 @@ const LONGEST_LOG = 4000;
 
 let socket = null;
 let number = 0;
-let told = 0, reached = 0; // newest number of this page that the words hold, that a picture's numbers hold
+let acknowledged = 0, reached = 0; // newest number of this page that the words hold, that a picture's numbers hold
 let waiting = []; // what was asked for while the server was away, in its order
 let attempts = 0;
 const MOST_WAITING = 500;
@@ -20,7 +20,7 @@ export function connect() {
   socket = new WebSocket(address);
   socket.binaryType = "arraybuffer";
   socket.onopen = () => {
-    if (attempts > 0) told = reached = number; // what was not answered never will be
+    if (attempts > 0) acknowledged = reached = number; // what was not answered never will be
     tell("connected", attempts > 0);
     attempts = 0;
     const late = waiting;
@@ -35,12 +35,12 @@ export function connect() {
   socket.onmessage = (event) => {
     if (typeof event.data === "string") {
       const message = JSON.parse(event.data);
-      if (isMine(message.of)) told = Math.max(told, message.of.number);
+      if (isMine(message.of)) acknowledged = Math.max(acknowledged, message.of.number);
       tell(message.type, message);
     } else {
       const message = unpacked(event.data);
       message.at = performance.now();
-      if (message.head.type === "frame") reached = Math.max(reached, told, isMine(message.head) ? message.head.number : 0);
+      if (message.head.type === "frame") reached = Math.max(reached, acknowledged, isMine(message.head) ? message.head.number : 0);
       tell(message.head.type, message);
     }
   };
@@ -86,7 +86,7 @@ export function move(words, pointed) {
 export const isMine = (head) => head?.page === page;
 
 /** Whether the motor in words holds what was asked for under a number, or why it was refused. */
-export const isTold = (asked) => asked <= told;
+export const isAcknowledged = (asked) => asked <= acknowledged;
 
 /** Where the hand has put something: that until the server's numbers hold it, then what they say. */
 export function standing() {
