@@ -13,9 +13,9 @@ import pytest
 
 from camring.evaluation.outcome import Outcome
 from camring.evaluation.record import Record
+from camring.files.checksums import checksum
 from camring.files.errors import InputError
 from camring.studies import verified_rows as verified
-from camring.studies.checksums import checksum
 from camring.studies.database import StudyDamaged
 from camring.studies.store import Store
 from camring.studies.study_folder import StudyFolder

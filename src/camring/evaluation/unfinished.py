@@ -6,7 +6,6 @@ comes to the same designs, bit for bit. The first answer makes the file; the who
 """
 
 import contextlib
-import hashlib
 import io
 import json
 import os
@@ -21,6 +20,7 @@ import numpy as np
 
 from camring.evaluation.answers import Answer, Arrays
 from camring.evaluation.interrupt import Interrupted
+from camring.files.checksums import checksum
 from camring.files.errors import CamringError, InputError
 from camring.files.motor.document import printable
 from camring.files.whole_file import draft_beside, settle
@@ -32,9 +32,9 @@ APPLICATION = int.from_bytes(b"camw", "big")
 SCHEMA = """
 CREATE TABLE request (only_one INTEGER PRIMARY KEY CHECK (only_one = 0), content TEXT NOT NULL);
 CREATE TABLE answer (
-    question BLOB PRIMARY KEY,      -- SHA-256 of what was asked, and of which function
+    question BLOB PRIMARY KEY,      -- checksum of what was asked, and of which function
     content BLOB NOT NULL,          -- arrays as NumPy's .npz
-    checksum BLOB NOT NULL          -- SHA-256 of both
+    checksum BLOB NOT NULL          -- of both
 ) WITHOUT ROWID;
 """
 
@@ -113,7 +113,7 @@ class Unfinished:
         """The function, of which every answer is kept; as `evaluation.answers.Remember`."""
 
         def asked(at: np.ndarray) -> Answer:
-            question = _digest(name.encode(), str((at.dtype, at.shape)).encode(), at.tobytes())
+            question = checksum(name, str((at.dtype, at.shape)), at.tobytes())
             with self._busy:  # searches ask from threads of their own
                 known = cast(Answer | None, self._answer(question))  # arrays as they were kept
             if known is None:
@@ -132,7 +132,7 @@ class Unfinished:
             found = self._connection.execute(
                 "SELECT content, checksum FROM answer WHERE question = ?", (question,)
             ).fetchone()
-            if found and _digest(question, found[0]) == found[1]:
+            if found and checksum(question, found[0]) == found[1]:
                 with np.load(io.BytesIO(found[0]), allow_pickle=False) as arrays:
                     return tuple(arrays[f"arr_{k}"] for k in range(len(arrays.files)))
         return None
@@ -147,7 +147,7 @@ class Unfinished:
             content = file.getvalue()
             self._connection.execute(
                 "INSERT OR REPLACE INTO answer VALUES (?, ?, ?)",
-                (question, content, _digest(question, content)),
+                (question, content, checksum(question, content)),
             )
 
     @contextlib.contextmanager
@@ -257,14 +257,6 @@ def _in_use(place: Path) -> InputError:
     return InputError(
         printable(place), "is in use by another process", "wait for it, or give another --out"
     )
-
-
-def _digest(*parts: bytes) -> bytes:
-    found = hashlib.sha256()
-    for each in parts:
-        found.update(len(each).to_bytes(8, "big"))
-        found.update(each)
-    return found.digest()
 
 
 __all__ = ["Request", "Unfinished", "done", "out_of", "place_of", "request_of"]

@@ -14,7 +14,7 @@ import numpy as np
 
 from camring.evaluation.outcome import EnvelopeNumbers, Outcome
 from camring.evaluation.record import Record
-from camring.studies.checksums import Cell, checksum
+from camring.files.checksums import Cell, checksum
 
 COLUMNS = "trial, phase, state, point, outcome, started, seconds, checksum"
 UNVERIFIED = "unverified"

@@ -1,4 +1,4 @@
-"""Checksums of what a study keeps, over the very bytes that its database holds."""
+"""Checksums of what a database keeps, over the very bytes that it holds."""
 
 import hashlib
 import struct
