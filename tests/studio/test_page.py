@@ -71,6 +71,50 @@ window.WebSocket = class extends Prompt {
 """
 
 
+FRAMES_LATE = """
+const Prompt = WebSocket;
+const kind = (data) => JSON.parse(new TextDecoder().decode(
+  new Uint8Array(data, 4, new DataView(data).getUint32(0, true)))).type;
+window.heldBack = [];
+window.WebSocket = class extends Prompt {
+  set onmessage(take) {
+    super.onmessage = (event) => {
+      const late = typeof event.data !== "string" && kind(event.data) === "frame";
+      if (late && window.heldBack) window.heldBack.push(() => take(event)); else take(event);
+    };
+  }
+};
+"""
+
+
+def test_what_comes_before_the_numbers_that_it_is_about_is_no_fault(page, browser, address):
+    """Arrows of the design before, when a file has just been opened, or on a page that is new."""
+    early = browser.new_page(reduced_motion="reduce")
+    early.set_default_timeout(1000 * PATIENCE)
+    faults = []
+    early.on("pageerror", lambda error: faults.append(str(error)))
+    early.add_init_script(FRAMES_LATE)
+    early.goto(address)
+    until(early, "camringStudio.known.model !== null")
+    until(early, "document.querySelector('[data-testid=cam-handle-3]') !== null")
+    for _ in range(2):  # which brings arrows to every page, the second time after the first frame
+        until(page, "camringStudio.known.arrows !== null")
+        answered(page, "'view', { point: 0 }")
+    until(page, "camringStudio.known.arrows !== null")
+    early.get_by_test_id("cam-handle-3").evaluate(
+        "each => each.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowUp' }))"
+    )
+    early.set_viewport_size({"width": 1200, "height": 800})
+    early.wait_for_timeout(300)
+    assert early.evaluate("camringStudio.known.now") is None
+    early.evaluate("heldBack.splice(0).forEach((each) => each()); heldBack = null")
+    until(early, "camringStudio.known.now !== null")
+    assert faults == []
+    answered(page, "'view', { point: 0 }")
+    until(early, "camringStudio.known.arrows !== null")
+    early.close()
+
+
 @pytest.mark.parametrize(
     "element",
     [

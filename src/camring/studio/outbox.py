@@ -4,6 +4,7 @@ import asyncio
 from typing import Any
 
 _MOVING = ("frame", "before", "envelope", "before envelope", "arrows", "study")
+"""In the order in which they are sent: numbers first, then what is about them."""
 
 
 class Outbox:
@@ -26,6 +27,6 @@ class Outbox:
         """All that waits, words first: a frame may need what the words say."""
         await self._filled.wait()
         self._filled.clear()
-        found = [*self._rest, *self._newest.values()]
+        found = [*self._rest, *(self._newest[kind] for kind in _MOVING if kind in self._newest)]
         self._rest, self._newest = [], {}
         return found

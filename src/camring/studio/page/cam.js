@@ -49,6 +49,7 @@ export function makeCamPanel() {
     circle.addEventListener("pointerdown", (event) => {
       event.preventDefault();
       circle.focus();
+      if (!known.now) return;
       circle.setPointerCapture(event.pointerId);
       held = { k, from: event.clientY, start: at(k), to: null };
       circle.classList.add("held");
@@ -79,7 +80,7 @@ export function makeCamPanel() {
     });
     nudged(circle, {
       from: () => at(k),
-      by: (key, from, fine) => { const step = key === "ArrowLeft" || key === "ArrowRight" ? 0 : stepOf(key, fine, STEPS); return step ? from + step : null; },
+      by: (key, from, fine) => { const step = key === "ArrowLeft" || key === "ArrowRight" ? 0 : stepOf(key, fine, STEPS); return step && from !== undefined ? from + step : null; },
       go: (to, stamp) => move({ grip: grip(k, to) }, stamp),
       keep: (to) => keepAt(k, to),
     });
@@ -87,7 +88,7 @@ export function makeCamPanel() {
     return circle;
   }
 
-  const at = (k) => hand.or({})[k] ?? known.now.arrays.controls[k];
+  const at = (k) => hand.or({})[k] ?? known.now?.arrays.controls[k];
 
   function keepAt(k, to) {
     const asked = ask("commit", { grip: grip(k, to), label: `control value ${k + 1}` });

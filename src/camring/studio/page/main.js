@@ -77,7 +77,8 @@ on("envelope", (message) => {
   schedule();
 });
 on("before envelope", (message) => { known.envelope.before = message; schedule(); });
-on("arrows", (message) => { if (!known.model) return; known.arrows = message; tell("slopes"); schedule(); });
+// Those that come before any numbers of this file are of another's.
+on("arrows", (message) => { if (!known.model || !known.now) return; known.arrows = message; tell("slopes"); schedule(); });
 on("trouble", (message) => say(message.head.sentence));
 on("error", (message) => {
   if (message.of?.op === "commit" && message.of.set) tell("refused", message);

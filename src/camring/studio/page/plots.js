@@ -228,7 +228,7 @@ function orders() {
   const at = (count) => Float64Array.from({ length: count }, (_, k) => (k + 1) * first());
   return plot("orders", "Torque by shaft order", {
     log: true, bars: true,
-    x: { label: null, unit: "", range: () => [0.4 * first(), (known.now.arrays.torque_orders.length + 0.6) * first()],
+    x: { label: null, unit: "", range: () => [0.4 * first(), ((known.now?.arrays.torque_orders?.length ?? 1) + 0.6) * first()],
       splits: () => [...at(known.now?.arrays.torque_orders?.length ?? 1)].filter((_, k, all) => all.length < 8 || k % 2 === 1), of: (frame) => at(frame.arrays.torque_orders.length) },
     y: { label: "% of mean, peak", of: percent },
     read: (data, k) => `order ${data[0][k]}: ${significant(data[2][k], 3)} %${data[1][k] === null ? "" : `, was ${significant(data[1][k], 3)}`}`,
