@@ -1,9 +1,12 @@
 """Evaluations on a cluster of dask.distributed: the same study, and workers that may die."""
 
+import asyncio
 import os
 import signal
 import subprocess
 import sys
+import time
+from concurrent.futures import CancelledError
 
 import fake_study
 import pytest
@@ -94,6 +97,57 @@ def test_a_study_stops_in_a_sentence_when_the_scheduler_is_gone(tmp_path):
         local.close()
         with pytest.raises(WorkersGone, match="can evaluate nothing"):
             fake_study.run(tmp_path / "study", 3, executor=cluster)
+
+
+def outcomes(cluster):
+    return {each.status for each in cluster._client.futures.values()}
+
+
+async def never(client, *arguments):
+    await asyncio.Event().wait()
+
+
+async def broken(client, *arguments):
+    raise OSError("the line broke")
+
+
+async def without_a_word(client):
+    """What a client does whose list of calls changes while it goes through it."""
+    client.status = "connecting"
+    raise RuntimeError("dictionary changed size during iteration")
+
+
+@pytest.mark.parametrize(
+    ("where", "fault", "seconds"),
+    [
+        ("_gather_remote", never, 0),
+        ("_gather_remote", broken, 0),
+        ("_reconnect", without_a_word, 60),
+    ],
+)
+def test_nobody_waits_for_an_answer_lost_with_its_scheduler(monkeypatch, where, fault, seconds):
+    """An outcome on its way as the scheduler goes; or a client that forgets who waits."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr(distributed.Client, where, fault)
+    monkeypatch.setattr(dask_cluster, "PATIENCE", 1.0)
+    local = distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0"
+    )
+    with Cluster(local.scheduler_address, patience=1.0) as cluster:
+        call = cluster.submit(time.sleep, seconds)
+        if not seconds:
+            wait_for(lambda: outcomes(cluster) == {"finished"})
+        local.close()
+        with pytest.raises(CancelledError, match="scheduler is gone"):
+            call.result(timeout=60)
+    monkeypatch.undo()
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0"
+        ) as local,
+        Cluster(local.scheduler_address) as cluster,
+    ):
+        assert cluster.submit(abs, -1).result(timeout=60) == 1
 
 
 @pytest.mark.parametrize(

@@ -3,9 +3,10 @@
 import logging
 import pickle
 import threading
+import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import CancelledError, Executor, Future
-from contextlib import contextmanager
+from concurrent.futures import CancelledError, Executor, Future, InvalidStateError
+from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar
@@ -53,7 +54,7 @@ class Cluster(Executor):
         if address.endswith(".json"):
             where = {"scheduler_file": str(_existing(Path(address)))}
         try:
-            self._client = Quiet(**where, timeout=patience, set_as_default=False)
+            self._client: Any = Quiet(**where, timeout=patience, set_as_default=False)
         except Exception as error:  # whoever answers there may say anything
             said = next(iter(str(error).splitlines()), "") or type(error).__name__
             raise InputError(
@@ -62,6 +63,10 @@ class Cluster(Executor):
                 "start one with `dask scheduler` and give the address that it prints, such as "
                 "tcp://host:8786",
             ) from error
+        self._patience = patience
+        self._open: set[Future[Any]] = set()
+        self._left = threading.Event()
+        threading.Thread(target=self._watch, name="camring-cluster", daemon=True).start()
 
     @property
     def workers(self) -> int:
@@ -76,13 +81,31 @@ class Cluster(Executor):
         call = cloudpickle.dumps((function, arguments, named))
         theirs = self._client.submit(carried_out, call, pure=False)
         ours: Future[Result] = Future()
+        self._open.add(ours)
+        ours.add_done_callback(self._open.discard)
         ours.add_done_callback(lambda done: theirs.cancel() if done.cancelled() else None)
         theirs.add_done_callback(lambda done: _settle(ours, done))
         return ours
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leaves the cluster, which remains; what nobody has begun is not begun."""
-        self._client.close()
+        self._left.set()
+        with suppress(Exception):  # what it lost before, it says again when it is closed
+            self._client.close()
+        self._give_up()
+
+    def _watch(self) -> None:
+        """Lets nobody wait for a scheduler that is gone, whatever its client makes of it."""
+        reached = time.monotonic()
+        while not self._left.wait(POLL_INTERVAL):
+            if self._client.status == "running":
+                reached = time.monotonic()
+            elif self._client.status == "closed" or time.monotonic() - reached > 3 * self._patience:
+                self._give_up()
+
+    def _give_up(self) -> None:
+        for each in tuple(self._open):
+            _fail(each, CancelledError("the scheduler is gone"))
 
 
 def carried_out(call: bytes) -> Any:
@@ -119,21 +142,36 @@ def _ended_when_nobody_waits() -> Iterator[None]:
 
 
 def _settle(ours: Future, theirs: Any) -> None:
+    """Hands on an outcome. Another may be lost on its way while a scheduler goes.
+
+    Runs in the one thread that dask has for that in a process, and must always return.
+    """
     from distributed.scheduler import KilledWorker
 
-    if not ours.set_running_or_notify_cancel():
+    if ours.cancelled():
+        ours.set_running_or_notify_cancel()
         return
-    if theirs.cancelled():
-        ours.set_exception(CancelledError("the scheduler is gone, or has forgotten it"))
-        return
-    error = theirs.exception()
-    if isinstance(error, KilledWorker):
-        died = 1 + error.allowed_failures
-        ours.set_exception(FunctionFailed(f"{died} workers died at it, one after the other"))
-    elif error is not None:
+    try:
+        while not ours.done():
+            if theirs.status == "error":
+                error = theirs.exception(timeout=PATIENCE)
+                if isinstance(error, KilledWorker):
+                    died = 1 + error.allowed_failures
+                    error = FunctionFailed(f"{died} workers died at it, one after the other")
+                _fail(ours, error)
+                return
+            with suppress(TimeoutError):
+                answer = theirs.result(timeout=PATIENCE)
+                with suppress(InvalidStateError):  # somebody has given it up
+                    ours.set_result(answer)
+    except BaseException as error:  # also asyncio's cancellation, which is no `Exception`
+        lost = "the scheduler is gone, or has forgotten it"
+        _fail(ours, CancelledError(f"{lost} ({type(error).__name__})"))
+
+
+def _fail(ours: Future, error: BaseException) -> None:
+    with suppress(InvalidStateError):
         ours.set_exception(error)
-    else:
-        ours.set_result(theirs.result())
 
 
 def _existing(path: Path) -> Path:
