@@ -14,6 +14,7 @@ OURS = (
     "bayesian + model",
     "scbo",
     "scbo + model",
+    "differences",
     "cma-es",
     "nelder-mead",
 )

@@ -55,6 +55,7 @@ METHODS = {
     "bayesian + model": _ours("bayesian", only_motors=True, cost=1),
     "scbo": _ours("scbo", cost=1),
     "scbo + model": _ours("scbo", only_motors=True, cost=1),
+    "differences": _ours("differences"),
     "cma-es": _ours("cma-es"),
     "nelder-mead": _ours("nelder-mead"),
     "SLSQP, differences": Method(rivals.slsqp),

@@ -17,6 +17,7 @@ STYLES = {
     "bayesian + model": ("#E69F00", "--"),
     "scbo": ("#CC79A7", "-"),
     "scbo + model": ("#CC79A7", "--"),
+    "differences": ("#009E73", "-."),
     "cma-es": ("#8C564B", "-"),
     "nelder-mead": ("#8C564B", "--"),
     "SLSQP, differences": ("#000000", "-"),
@@ -31,7 +32,7 @@ STYLES = {
     "BoTorch SCBO": ("#009E73", "--"),
 }
 LOWEST, HIGHEST = 1e-4, 10.0
-BAND = ("gradient", "scbo", "scbo + model", "SLSQP, differences", "COBYQA")
+BAND = ("gradient", "scbo", "scbo + model", "differences", "SLSQP, differences", "COBYQA")
 LONG = 300  # evaluations; a panel of longer runs has a logarithmic axis
 """Methods whose quartiles are drawn as well; more would hide one another."""
 

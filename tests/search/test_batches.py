@@ -30,6 +30,7 @@ STRATEGIES = {
     # Its first stage ends in the middle of a batch.
     "hybrid": Hybrid((Stage(CmaEs(2, batch=4), 6), Stage(NelderMead(2)))),
     "gradient": Hybrid((Stage(GradientSearch(2, no_slopes), 8), Stage(NelderMead(2)))),
+    "differences": Hybrid((Stage(CmaEs(2, batch=3), 4), Stage(GradientSearch(2)))),
 }
 
 

@@ -139,7 +139,7 @@ def test_a_function_that_stalls_or_crashes_costs_its_own_evaluation_only(tmp_pat
         ({"variables": {"width": 3.0}}, "no pair"),
         ({"constraints": ("width",)}, "name in use"),
         ({"budget": 0}, "budget is 0"),
-        ({"method": "gradient"}, "choose bayesian"),
+        ({"method": "gradient"}, "choose automatic"),
         ({"timeout": -1.0}, "above zero"),
         ({"timeout": 1.0}, "top of a file"),
         ({"given": [{"width": 9.0, "height": 0.0}]}, "is 9, outside 0 to 4"),

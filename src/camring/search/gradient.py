@@ -1,23 +1,23 @@
-"""Descent from several starts, with exact slopes: sequential quadratic programming.
+"""Descent from several starts along slopes: sequential quadratic programming.
 
-Constraints stay constraints. Each descent is SciPy's SLSQP (Kraft 1988) on the unit
-box, from a point of the initial design. What it does follows from the history alone:
-run again from its start through the evaluations known, it comes to the first point that
-is not among them, and that is the next one to evaluate. A study can therefore be
-stopped at any trial and goes on with the same bits. While the history only grows by the
-point asked for, the descent is held where it waits (`live_loop.py`) and not run again.
+The slopes are exact, or differences of evaluations. Constraints stay constraints. Each descent
+is SciPy's SLSQP (Kraft 1988) on the unit box, from a point of the initial design. What it does
+follows from the history alone: run again from its start through the evaluations known, it comes
+to the first point that is not among them, and that is the next one to evaluate. A study can
+therefore be stopped at any trial and goes on with the same bits. While the history only grows by
+the point asked for, the descent is held where it waits (`live_loop.py`) and not run again.
 """
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import TypeAlias
 
 import numpy as np
-from jaxtyping import Float
 from scipy.optimize import minimize
 
+from camring.search.descent_path import Known, Path, Point, Slopes, Stalled
+from camring.search.differences import Differences, TooNoisy
 from camring.search.live_loop import Asks, HeldLoop
 from camring.search.problem import (
     AbstractStrategy,
@@ -27,36 +27,29 @@ from camring.search.problem import (
     Stop,
     best_of,
 )
-from camring.search.replay import Unknown, on_grid
+from camring.search.replay import Unknown
 from camring.search.sampling import initial_point
 from camring.search.threads import one_linear_algebra_thread
 
-Point: TypeAlias = Float[np.ndarray, " dimension"]
-Slopes: TypeAlias = Callable[
-    [Point], tuple[Float[np.ndarray, " dimension"], Float[np.ndarray, "constraint dimension"]]
-]
-
-INSIDE = 2e-7  # what a descent keeps of every limit: it may end `accuracy` beyond it
+INITIAL = "initial"
 SOBOL_STARTS = 8
 ROUNDS = 3  # of one descent: after a round that did not converge it begins anew where it is
 STEPS = 100
-PATIENCE = 60  # evaluations of one descent without a gain; then it has ended
-PROGRESS = 1e-6  # of the objective, or of the violation: what counts as a gain
-
-
-class _Stalled(Exception):
-    """A descent goes on without getting anywhere."""
 
 
 @dataclass(frozen=True)
 class GradientSearch(AbstractStrategy):
     """Descends from the best start, from the one farthest from it, and so on in turn.
 
+    Starts are the points of its initial design. As a later stage of a search (`Hybrid`) it has
+    none, and starts are all evaluations before it.
+
     Attributes
     ----------
     slopes
         At a point that did not fail: the gradient of the objective, and that of each
-        constraint. Asked more than once for the same point.
+        constraint. Asked more than once for the same point. None: differences
+        of evaluations, all of a gradient's known ahead.
     given
         Points to evaluate first; eight of Sobol's follow.
     descents
@@ -71,7 +64,7 @@ class GradientSearch(AbstractStrategy):
     """
 
     dimension: int
-    slopes: Slopes
+    slopes: Slopes | None = None
     given: tuple[tuple[float, ...], ...] = ()
     descents: int = 8
     agreeing: int = 3
@@ -89,12 +82,13 @@ class GradientSearch(AbstractStrategy):
 
     def propose(self, history: Sequence[Evaluation], memory: Memory, seed: int) -> Proposal | Stop:
         """The next point: of the initial design, or of the descent under way."""
-        if (waiting := Proposal.waiting(memory)) is not None:
+        if memory.get("phase") == INITIAL and (waiting := Proposal.waiting(memory)) is not None:
             return waiting
-        if len(history) < self.initial:
-            places = range(len(history), self.initial)
+        begun: int = memory.get("begun", len(history) if history and not memory else self.initial)
+        if len(history) < begun:
+            places = range(len(history), begun)
             design = [initial_point(place, self.dimension, seed, self.given) for place in places]
-            return Proposal.of_batch(design, "initial", {})
+            return Proposal.of_batch(design, INITIAL, {})
         starts: list[int] = list(memory.get("starts", ()))
         ends: list[int] = list(memory.get("ends", ()))
         with one_linear_algebra_thread():
@@ -102,14 +96,21 @@ class GradientSearch(AbstractStrategy):
                 if len(starts) == len(ends):
                     if (reason := self._enough(history, ends)) is not None:
                         return Stop(reason)
-                    start = self._next_start(history, starts, ends)
+                    start = self._next_start(history[:begun], history, starts, ends)
                     if start is None:
                         return Stop(f"All {len(starts)} usable starts have been descended from.")
                     starts.append(start)
-                reached = self._descended(history, starts[-1])
-                if isinstance(reached, np.ndarray):
-                    kept = {"starts": starts, "ends": ends}
-                    return Proposal(reached, f"descent {len(starts)}", kept)
+                try:
+                    reached = self._descended(history, history[:begun], starts)
+                except Unknown as unknown:
+                    kept: Memory = {"starts": starts, "ends": ends}
+                    if begun != self.initial:
+                        kept["begun"] = begun
+                    if unknown.ahead:
+                        kept["ahead"] = [each.tolist() for each in unknown.ahead]
+                    return Proposal(unknown.point, f"descent {len(starts)}", kept)
+                except TooNoisy as noisy:
+                    return Stop(str(noisy))
                 ends.append(reached.trial)
 
     def _enough(self, history: Sequence[Evaluation], ends: Sequence[int]) -> str | None:
@@ -131,12 +132,12 @@ class GradientSearch(AbstractStrategy):
 
     def _next_start(
         self,
+        design: Sequence[Evaluation],
         history: Sequence[Evaluation],
         starts: Sequence[int],
         ends: Sequence[int],
     ) -> int | None:
         """In turn the best one left, and the one farthest from where descents have been."""
-        design = history[: self.initial]
         left = [each for each in design if not each.failed and each.trial not in starts]
         best = best_of(left, self.tolerance)
         if best is None:
@@ -150,37 +151,54 @@ class GradientSearch(AbstractStrategy):
 
         return max(left, key=distance).trial
 
-    def _descended(self, history: Sequence[Evaluation], start: int) -> Point | Evaluation:
-        """Where a descent wants to look next, or the best that it has found."""
+    def _descended(
+        self, history: Sequence[Evaluation], design: Sequence[Evaluation], starts: Sequence[int]
+    ) -> Evaluation:
+        """The best that the newest descent has found.
+
+        Raises
+        ------
+        Unknown
+            With the point at which it wants to look next.
+        TooNoisy
+            When no slopes can be had.
+        """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that a step was clipped to the box
-            try:
-                # Of a copy: a waiting descent must not keep this strategy, which ends it, alive.
-                descent = partial(replace(self)._descent, history, start)
-                return self._held.continued(descent, history, start)
-            except Unknown as unknown:
-                return unknown.point
+            # Of a copy: a waiting descent must not keep this strategy, which ends it, alive.
+            descent = partial(replace(self)._descent, history, design, starts)
+            return self._held.continued(descent, history, starts[-1])
 
-    def _descent(self, history: Sequence[Evaluation], start: int, ask: Asks) -> Evaluation:
-        known = {on_grid(each.point).tobytes(): each for each in history}
-        # The objectives of the initial design do not change while a descent goes on.
-        usable = [each for each in history[: self.initial] if not each.failed]
+    def _descent(
+        self,
+        history: Sequence[Evaluation],
+        design: Sequence[Evaluation],
+        starts: Sequence[int],
+        ask: Asks,
+    ) -> Evaluation:
+        known = Known(history, ask)
+        # The objectives of the design do not change while a descent goes on.
+        usable = [each for each in design if not each.failed]
         scale = 1 / max(min(abs(each.objective) for each in usable), np.finfo(float).tiny)
-        path = _Path(known, ask, self.slopes, scale, history[start], self.tolerance)
+        slopes, accuracy = self.slopes, self.accuracy
+        if slopes is None:
+            slopes = Differences.measured(known, history[starts[0]], scale)
+            accuracy = max(accuracy, slopes.noise)
+        path = Path(known, slopes, scale, history[starts[-1]], self.tolerance)
         try:
             for _ in range(ROUNDS):
-                before = path.best(self.tolerance)
-                converged = self._round(path, before.point)
-                best = path.best(self.tolerance)
+                before = path.best()
+                converged = self._round(path, before.point, accuracy)
+                best = path.best()
                 if best is before or (converged and best.feasible(self.tolerance)):
                     break
                 if not best.feasible(self.tolerance):
                     self._towards_feasible(path, best.point)
-        except _Stalled:
+        except Stalled:
             pass
-        return path.best(self.tolerance)
+        return path.best()
 
-    def _round(self, path: "_Path", start: Point) -> bool:
+    def _round(self, path: Path, start: Point, accuracy: float) -> bool:
         found = minimize(
             path.objective,
             start,
@@ -192,11 +210,11 @@ class GradientSearch(AbstractStrategy):
                 "jac": lambda point: -path.constraint_slopes(point),
             },
             method="SLSQP",
-            options={"maxiter": STEPS, "ftol": self.accuracy},
+            options={"maxiter": STEPS, "ftol": accuracy},
         )
         return bool(found.success)
 
-    def _towards_feasible(self, path: "_Path", start: Point) -> None:
+    def _towards_feasible(self, path: Path, start: Point) -> None:
         """Fewer and smaller violations, whatever the objective."""
 
         def excess(point: Point) -> tuple[float, Point]:
@@ -211,72 +229,3 @@ class GradientSearch(AbstractStrategy):
             method="L-BFGS-B",
             options={"maxiter": STEPS},
         )
-
-
-class _Path:
-    """What a descent sees of the history, and which evaluations it has passed."""
-
-    def __init__(
-        self,
-        known: dict[bytes, Evaluation],
-        ask: Asks,
-        slopes: Slopes,
-        scale: float,
-        start: Evaluation,
-        tolerance: float,
-    ) -> None:
-        self._known, self._ask, self._slopes, self._scale = known, ask, slopes, scale
-        self._tolerance = tolerance
-        self._lead, self._led_at = start.rank(tolerance), 0
-        self.seen: list[Evaluation] = [start]
-
-    def best(self, tolerance: float) -> Evaluation:
-        """Of all that the descent has passed; its start, at least, did not fail."""
-        found = best_of(self.seen, tolerance)
-        assert found is not None
-        return found
-
-    def _at(self, point: Point) -> Evaluation:
-        within = on_grid(point)
-        found = self._known.get(within.tobytes())
-        if found is None:
-            found = self._known[within.tobytes()] = self._ask(within)
-        if found is not self.seen[-1]:
-            self.seen.append(found)
-            self._require_progress(found)
-        return found
-
-    def _require_progress(self, found: Evaluation) -> None:
-        """Rounding can keep SLSQP at the end of its descent for as long as it is let."""
-        group, value = found.rank(self._tolerance)
-        led, least = self._lead
-        if group < led or (group == led and value < least - PROGRESS * abs(least)):
-            self._lead, self._led_at = (group, value), len(self.seen)
-        elif len(self.seen) - self._led_at > PATIENCE:
-            raise _Stalled
-
-    def objective(self, point: Point) -> float:
-        """Scaled to about one at a good design; a failed one is worse than all before it."""
-        here = self._at(point)
-        if here.failed:
-            sound = [each.objective for each in self.seen if not each.failed]
-            return self._scale * (max(sound) + 10 * abs(max(sound)))
-        return self._scale * here.objective
-
-    def objective_slope(self, point: Point) -> Point:
-        here = self._at(point)
-        if here.failed:
-            return np.zeros_like(point)
-        return self._scale * self._slopes(here.point)[0]
-
-    def constraints(self, point: Point) -> Float[np.ndarray, " constraint"]:
-        here = self._at(point)
-        if here.failed:
-            return np.ones_like(here.constraints)
-        return here.constraints + INSIDE
-
-    def constraint_slopes(self, point: Point) -> Float[np.ndarray, "constraint dimension"]:
-        here = self._at(point)
-        if here.failed:
-            return np.zeros((len(here.constraints), len(point)))
-        return self._slopes(here.point)[1]

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from operator import is_
 from queue import SimpleQueue
 from threading import Thread
-from typing import Any, Generic, TypeAlias, TypeVar
+from typing import Any, Generic, Protocol, TypeAlias, TypeVar
 
 import numpy as np
 from jaxtyping import Float
@@ -17,8 +17,13 @@ from camring.search.problem import Evaluation
 from camring.search.replay import Unknown, on_grid
 
 Point: TypeAlias = Float[np.ndarray, " dimension"]
-Asks: TypeAlias = Callable[[Point], Evaluation]
 Result = TypeVar("Result")
+
+
+class Asks(Protocol):
+    """Waits for an evaluation, and says which will be asked for after it."""
+
+    def __call__(self, point: Point, ahead: Sequence[Point] = ()) -> Evaluation: ...
 
 
 class _Abandoned(BaseException):
@@ -79,8 +84,8 @@ class LiveLoop(Generic[Result]):
         except BaseException as error:
             self._news.put(("error", error))
 
-    def _ask(self, point: Point) -> Evaluation:
-        self._news.put(("question", Unknown(point)))
+    def _ask(self, point: Point, ahead: Sequence[Point] = ()) -> Evaluation:
+        self._news.put(("question", Unknown(point, ahead)))
         answer = self._answers.get()
         if answer is None:
             raise _Abandoned

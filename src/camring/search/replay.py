@@ -5,6 +5,8 @@ history, up to the first point that is not among them: that is the next one to e
 So it keeps no state, and a study stopped at any trial goes on with the same bits.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import Float
 
@@ -12,10 +14,14 @@ GRID = 2.0**-28  # box widths; nearer points share one evaluation, or vain steps
 
 
 class Unknown(Exception):
-    """The optimiser has come to a point that nobody has evaluated."""
+    """The optimiser has come to a point that nobody has evaluated, and knows some after it."""
 
-    def __init__(self, point: Float[np.ndarray, " dimension"]) -> None:
-        self.point = point
+    def __init__(
+        self,
+        point: Float[np.ndarray, " dimension"],
+        ahead: Sequence[Float[np.ndarray, " dimension"]] = (),
+    ) -> None:
+        self.point, self.ahead = point, tuple(ahead)
 
 
 def on_grid(point: Float[np.ndarray, " dimension"]) -> Float[np.ndarray, " dimension"]:

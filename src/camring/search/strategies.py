@@ -10,7 +10,8 @@ from jaxtyping import Float
 from camring.search.bayesian import Bayesian
 from camring.search.cma_es import CmaEs
 from camring.search.cobyqa import Cobyqa
-from camring.search.gradient import GradientSearch, Slopes
+from camring.search.descent_path import Slopes
+from camring.search.gradient import GradientSearch
 from camring.search.hybrid import Hybrid, Stage
 from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy, Points
@@ -19,6 +20,9 @@ from camring.search.scbo import Scbo
 SHARE_OF_REFINEMENT = 0.2  # of a Bayesian search's budget, for the descent at its end
 FIRST_STEP = 0.25  # box widths, of a descent that begins where nothing is known
 REFINING_STEP = 0.05  # box widths: a first step of that descent
+LEARNING, LEARNING_EACH = 30, 4  # evaluations, and of each variable, before descents by differences
+FEW_VARIABLES = 6  # up to which processes need fewer evaluations than differences
+FEWEST_STEPS = 5  # of a descent that is worth its beginning
 
 
 @dataclass(frozen=True)
@@ -74,6 +78,29 @@ def _scbo(task: Task) -> AbstractStrategy:
     return Scbo(task.dimension, approximate=task.approximate, given=task.given, batch=task.batch)
 
 
+def _differences(task: Task) -> AbstractStrategy:
+    """Processes find where to begin, descents by differences go on, then processes again.
+
+    Processes have the last word where a model is too noisy for differences, too.
+    """
+    learning = _scbo(task)
+    descents = GradientSearch(task.dimension)
+    stages = (Stage(learning, _learning(task)), Stage(descents), Stage(learning))
+    return Hybrid(stages)
+
+
+def _learning(task: Task) -> int:
+    return max(LEARNING, LEARNING_EACH * task.dimension, len(task.given))
+
+
+def _automatic(task: Task) -> AbstractStrategy:
+    """Descents where there are many variables, evaluations for some steps, and no better guide."""
+    steps = (task.budget - _learning(task)) / (task.dimension + 1)
+    if task.dimension <= FEW_VARIABLES or steps < FEWEST_STEPS or task.approximate is not None:
+        return _scbo(task)
+    return _differences(task)
+
+
 def _cma_es(task: Task) -> AbstractStrategy:
     return CmaEs(task.dimension, given=task.given, batch=task.batch)
 
@@ -85,9 +112,11 @@ def _gradient(task: Task) -> AbstractStrategy:
 
 
 STRATEGIES: dict[str, Callable[[Task], AbstractStrategy]] = {
+    "automatic": _automatic,
     "bayesian": _bayesian,
     "cma-es": _cma_es,
     "cobyqa": _cobyqa,
+    "differences": _differences,
     "gradient": _gradient,
     "nelder-mead": _nelder_mead,
     "scbo": _scbo,

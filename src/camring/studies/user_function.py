@@ -55,7 +55,7 @@ def minimise_function(
     *,
     budget: int = 100,
     seed: int = 0,
-    method: str = "scbo",
+    method: str = "automatic",
     given: Sequence[Mapping[str, float]] = (),
     timeout: float | None = None,
     executor: Executor | None = None,
@@ -80,7 +80,9 @@ def minimise_function(
     budget
         Evaluations in all.
     method
-        "bayesian", "cma-es", "cobyqa", "nelder-mead" or "scbo".
+        "bayesian", "cma-es", "cobyqa", "differences", "nelder-mead" or "scbo". "automatic"
+        is "differences" above six variables, where the budget pays for a descent and the
+        function is smooth enough, which is measured; else "scbo".
     given
         Designs to begin with, name to number.
     timeout

@@ -37,7 +37,9 @@ class CamringSampler(BaseSampler):
     Parameters
     ----------
     strategy
-        "bayesian", "cma-es", "cobyqa", "nelder-mead" or "scbo".
+        "bayesian", "cma-es", "cobyqa", "differences", "nelder-mead" or "scbo". "automatic"
+        is "differences" above six parameters, where `budget` pays for a descent and the
+        objective is smooth enough, which is measured; else "scbo".
     seed
         Where all chance comes from: the same seed, the same trials, bit for bit.
     space
@@ -61,7 +63,7 @@ class CamringSampler(BaseSampler):
 
     def __init__(
         self,
-        strategy: str = "scbo",
+        strategy: str = "automatic",
         *,
         seed: int = 0,
         space: Mapping[str, BaseDistribution] | None = None,
