@@ -7,7 +7,7 @@ import pytest
 
 from camring.search.bayesian import Bayesian
 from camring.search.cma_es import CmaEs
-from camring.search.gradient import GradientSearch
+from camring.search.descent.gradient import GradientSearch
 from camring.search.hybrid import Hybrid, Stage
 from camring.search.minimise import minimise
 from camring.search.nelder_mead import NelderMead
@@ -22,22 +22,22 @@ def no_slopes(point):
 
 
 STRATEGIES = {
-    "scbo": Scbo(2, batch=4),
-    "cma-es": CmaEs(2, batch=4),
-    "bayesian": Bayesian(2, batch=4, convergence=None),
-    "penalised": Bayesian(2, batch=3, mode="penalised", convergence=None),
-    "simplex": NelderMead(2, start=(0.4, 0.6)),
+    "scbo": lambda: Scbo(2, batch=4),
+    "cma-es": lambda: CmaEs(2, batch=4),
+    "bayesian": lambda: Bayesian(2, batch=4, convergence=None),
+    "penalised": lambda: Bayesian(2, batch=3, mode="penalised", convergence=None),
+    "simplex": lambda: NelderMead(2, start=(0.4, 0.6)),
     # Its first stage ends in the middle of a batch.
-    "hybrid": Hybrid((Stage(CmaEs(2, batch=4), 6), Stage(NelderMead(2)))),
-    "gradient": Hybrid((Stage(GradientSearch(2, no_slopes), 8), Stage(NelderMead(2)))),
-    "differences": Hybrid((Stage(CmaEs(2, batch=3), 4), Stage(GradientSearch(2)))),
+    "hybrid": lambda: Hybrid((Stage(CmaEs(2, batch=4), 6), Stage(NelderMead(2)))),
+    "gradient": lambda: Hybrid((Stage(GradientSearch(2, no_slopes), 8), Stage(NelderMead(2)))),
+    "differences": lambda: Hybrid((Stage(CmaEs(2, batch=3), 4), Stage(GradientSearch(2)))),
 }
 
 
 @pytest.fixture(scope="module", params=STRATEGIES)
 def searched(request, townsend):
     memories = []
-    strategy = STRATEGIES[request.param]
+    strategy = STRATEGIES[request.param]()  # whose loop waits no longer than these tests
     found = minimise(
         townsend,
         strategy,

@@ -5,9 +5,9 @@ import zlib
 import numpy as np
 import pytest
 
-from camring.search.descent_path import Known
-from camring.search.differences import LONGEST, SHORTEST, Differences, TooNoisy
-from camring.search.gradient import GradientSearch
+from camring.search.descent.differences import LONGEST, SHORTEST, Differences, TooNoisy
+from camring.search.descent.gradient import GradientSearch
+from camring.search.descent.path import Known
 from camring.search.minimise import minimise
 from camring.search.problem import Evaluation, Problem
 from camring.search.strategies import Task, strategy_named

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from camring.search.gradient import SOBOL_STARTS, GradientSearch
+from camring.search.descent.gradient import SOBOL_STARTS, GradientSearch
 from camring.search.minimise import minimise
 from camring.search.problem import Evaluation, Problem
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.special import ndtri
 
-from camring.search.gradient import GradientSearch
+from camring.search.descent.gradient import GradientSearch
 from camring.search.minimise import minimise
 from camring.search.scatter.contributions import by_regression, by_slopes
 from camring.search.scatter.distributions import KINDS, WIDTHS, deviates, owners

@@ -11,7 +11,7 @@ from camring.files.motor import MotorFile, missing_design_space
 from camring.files.motor.goal_tables import BAYESIAN, GRADIENT, SCBO
 from camring.objective.theory import theory_designs
 from camring.search.bayesian import Bayesian
-from camring.search.gradient import GradientSearch
+from camring.search.descent.gradient import GradientSearch
 from camring.search.problem import AbstractStrategy
 from camring.search.scbo import Scbo
 from camring.search.strategies import Task, strategy_named, then_descent

@@ -10,8 +10,8 @@ from jaxtyping import Float
 from camring.search.bayesian import Bayesian
 from camring.search.cma_es import CmaEs
 from camring.search.cobyqa import Cobyqa
-from camring.search.descent_path import Slopes
-from camring.search.gradient import GradientSearch
+from camring.search.descent.gradient import GradientSearch
+from camring.search.descent.path import Slopes
 from camring.search.hybrid import Hybrid, Stage
 from camring.search.nelder_mead import NelderMead
 from camring.search.problem import AbstractStrategy, Points

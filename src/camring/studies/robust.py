@@ -19,7 +19,7 @@ from camring.evaluation.outcome import SAFETY
 from camring.evaluation.strategy import first_points
 from camring.files.errors import CamringError
 from camring.files.motor import MotorFile, missing_design_space
-from camring.search.gradient import GradientSearch
+from camring.search.descent.gradient import GradientSearch
 from camring.search.minimise import SearchResult, minimise
 from camring.search.problem import Evaluation, Outputs, Points, Problem
 from camring.search.scatter.distributions import deviates

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from camring.search.descent_path import Known, Point
+from camring.search.descent.path import Known, Point
 from camring.search.problem import Evaluation
 
 SHORTEST, LONGEST = 2.0**-20, 2.0**-8  # box widths: steps of differences

@@ -16,8 +16,8 @@ from functools import partial
 import numpy as np
 from scipy.optimize import minimize
 
-from camring.search.descent_path import Known, Path, Point, Slopes, Stalled
-from camring.search.differences import Differences, TooNoisy
+from camring.search.descent.differences import Differences, TooNoisy
+from camring.search.descent.path import Known, Path, Point, Slopes, Stalled
 from camring.search.live_loop import Asks, HeldLoop
 from camring.search.problem import (
     AbstractStrategy,
