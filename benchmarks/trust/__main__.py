@@ -5,6 +5,7 @@
     python -m benchmarks.trust study-kills --count 1000
     python -m benchmarks.trust kills --count 20 --of optimise map
     python -m benchmarks.trust interrupts --count 20
+    python -m benchmarks.trust power-cuts --count 1000
     python -m benchmarks.trust archives
     python -m benchmarks.trust errors --count 70
 
@@ -27,7 +28,7 @@ sys.path[:0] = [str(TESTS / "helpers"), str(TESTS)]
 def main() -> None:
     keep_compiled_programs()  # before JAX is imported
 
-    from benchmarks.trust import accepted, archives, errors, kills, study_kills
+    from benchmarks.trust import accepted, archives, errors, kills, power_cuts, study_kills
 
     measurements: dict[str, Callable[[argparse.Namespace], int]] = {
         "files": accepted.files,
@@ -35,6 +36,7 @@ def main() -> None:
         "study-kills": study_kills.study_kills,
         "kills": kills.kills,
         "interrupts": kills.interrupts,
+        "power-cuts": power_cuts.power_cuts,
         "archives": archives.archives,
         "errors": errors.errors,
     }
