@@ -9,7 +9,7 @@ from pathlib import Path
 import power_cut
 from recorded_work import WORK, Record
 
-COUNTS = {"file": 20, "answers": 20, "study": 60}
+COUNTS = {"file": 20, "new": 20, "folders": 10, "state": 20, "answers": 20, "study": 60}
 
 
 def power_cuts(asked: argparse.Namespace) -> int:

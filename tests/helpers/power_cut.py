@@ -195,6 +195,7 @@ def laid_out(contents: dict[str, bytes], folder: Path) -> None:
             path.mkdir(parents=True, exist_ok=True)
         else:
             path.parent.mkdir(parents=True, exist_ok=True)
+            path.touch(mode=0o600)  # modes are not recorded; the strictest does for all
             path.write_bytes(content)
 
 

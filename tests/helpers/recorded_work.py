@@ -1,6 +1,6 @@
 """Work that is recorded for `power_cut.py`, and what must be left of it after any cut.
 
-Also a program: `python recorded_work.py study|answers|file FOLDER COUNT`. Each time that what it
+Also a program: `python recorded_work.py study FOLDER COUNT`. Each time that what it
 has done is kept, as far as it is told, it adds a line to `FOLDER/acknowledged`.
 """
 
@@ -8,15 +8,19 @@ import os
 import sys
 import tempfile
 from pathlib import Path
+from unittest import mock
 
 import fake_study
 import numpy as np
 import power_cut
 
+from camring.evaluation import consent
 from camring.evaluation.unfinished import Request, Unfinished
 from camring.files.errors import CamringError
+from camring.files.new_file import whole_folder, write_new_file
 from camring.files.whole_file import write_safely
 from camring.studies.store import Store
+from camring.studio import memory
 
 ACKNOWLEDGED = "acknowledged"
 REQUEST = Request("pareto", "[motor]", "motor.toml", {"points": 3})
@@ -30,12 +34,12 @@ def study(folder, count, acknowledge):
         acknowledge()
 
     Store.append = append
-    fake_study.run(folder / "study", count)
+    fake_study.run(folder / "all" / "study", count)
 
 
 def study_is_kept(folder, count, acknowledged):
     """All evaluations that were acknowledged, bit for bit, and the study goes on to its end."""
-    place, whole = folder / "study", _whole_study(count)
+    place, whole = folder / "all" / "study", _whole_study(count)
     if not place.exists():
         assert acknowledged == 0
     else:
@@ -107,7 +111,61 @@ def _content(number):
     return b"%d\n" % number * 1000
 
 
+def new(folder, count, acknowledge):
+    for number in range(count):
+        write_new_file(folder / f"{number}.toml", _content(number).decode())
+        acknowledge()
+
+
+def new_is_kept(folder, count, acknowledged):
+    """Every file, and of the one under way all or nothing."""
+    for number in range(count):
+        path = folder / f"{number}.toml"
+        assert path.exists() or number >= acknowledged
+        assert not path.exists() or path.read_bytes() == _content(number)
+
+
+def folders(folder, count, acknowledge):
+    for number in range(count):
+        with whole_folder(folder / "all" / str(number)) as draft:
+            write_new_file(draft / "front.csv", _content(number).decode())
+            (draft / "pictures").mkdir()
+            (draft / "pictures" / "front.svg").write_bytes(_content(number))
+        acknowledge()
+
+
+def folders_are_kept(folder, count, acknowledged):
+    """Each with all that is in it, or not at all."""
+    for number in range(count):
+        place = folder / "all" / str(number)
+        assert place.exists() or number >= acknowledged
+        if place.exists():
+            for name in ("front.csv", "pictures/front.svg"):
+                assert (place / name).read_bytes() == _content(number)
+
+
+def state(folder, count, acknowledge):
+    os.environ["XDG_STATE_HOME"] = str(folder)
+    assert consent._key() is not None
+    for number in range(count):
+        memory.remember(Path("motor.toml"), memory.Memory.of(str(number), None))
+        acknowledge()
+
+
+def state_is_kept(folder, count, acknowledged):
+    """What the studio remembers, and a key that can be used."""
+    with mock.patch.dict(os.environ, XDG_STATE_HOME=str(folder)):
+        assert consent._key() is not None
+        found = memory.recalled(Path("motor.toml"))
+    if acknowledged:
+        assert found is not None
+        assert int(found.texts[0]) in (acknowledged - 1, acknowledged)
+
+
 WORK = {
+    "new": (new, new_is_kept),
+    "folders": (folders, folders_are_kept),
+    "state": (state, state_is_kept),
     "study": (study, study_is_kept),
     "answers": (answers, answers_are_kept),
     "file": (file, file_is_kept),

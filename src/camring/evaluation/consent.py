@@ -15,7 +15,6 @@ import os
 import secrets
 import stat
 import sys
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeAlias
@@ -24,6 +23,7 @@ from camring.evaluation.user_programs.command import UserCommand
 from camring.evaluation.user_programs.fmu import Mapped
 from camring.files.errors import InputError
 from camring.files.motor.document import printable
+from camring.files.whole_file import make_folder, write_privately
 
 Allow: TypeAlias = bool | Callable[[UserCommand], bool]
 """Whether a named program may run; or who is asked."""
@@ -128,17 +128,11 @@ def _key() -> bytes | None:
     """This user's own; made when there is none."""
     try:
         path = state_folder() / KEY_NAME
-        if not path.exists():
-            path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-            descriptor, name = tempfile.mkstemp(dir=path.parent)  # mode 0600
-            with os.fdopen(descriptor, "wb") as file:
-                file.write(secrets.token_bytes(KEY_SIZE))
-            try:
-                os.link(name, path)  # whole or not at all, and never in place of another
-            except FileExistsError:
-                pass
-            finally:
-                os.unlink(name)
+        damaged = path.exists() and path.stat().st_size != KEY_SIZE  # no mark can fit it
+        if damaged or not path.exists():
+            make_folder(path.parent, 0o700)
+            with contextlib.suppress(FileExistsError):  # never in place of another
+                write_privately(path, secrets.token_bytes(KEY_SIZE), replace=damaged)
         status = path.lstat()
         key = path.read_bytes()
     except (OSError, RuntimeError):  # the second when there is no home at all

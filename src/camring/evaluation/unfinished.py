@@ -23,7 +23,7 @@ from camring.evaluation.interrupt import Interrupted
 from camring.files.checksums import checksum
 from camring.files.errors import CamringError, InputError
 from camring.files.motor.document import printable
-from camring.files.whole_file import draft_beside, settle
+from camring.files.whole_file import draft_beside, settle, sync_names
 from camring.version import __version__
 
 SUFFIX = ".unfinished"
@@ -239,6 +239,7 @@ def _made(place: Path, request: Request) -> sqlite3.Connection:
             os.link(draft, place)
         except FileExistsError:
             raise _in_use(place) from None
+    sync_names(place.parent)
     return _opened(place)
 
 

@@ -10,7 +10,15 @@ from pathlib import Path
 
 from camring.files.errors import InputError
 from camring.files.motor.document import printable
-from camring.files.whole_file import draft_beside, settle, usual_mode, write_safely
+from camring.files.whole_file import (
+    draft_beside,
+    make_folder,
+    settle,
+    sync_folder,
+    sync_names,
+    usual_mode,
+    write_safely,
+)
 
 NO_LINKS = (errno.EPERM, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EMLINK, errno.EINVAL)
 """What a file system says that knows one name for each file."""
@@ -79,11 +87,13 @@ def whole_folder(path: Path) -> Iterator[Path]:
     try:
         if os.path.lexists(path):
             raise FileExistsError
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         unfinished = Path(tempfile.mkdtemp(prefix=f".{path.name[:100]}.", dir=path.parent))
         yield unfinished
         unfinished.chmod(usual_mode(folder=True))
+        sync_folder(unfinished)
         unfinished.rename(path)
+        sync_names(path.parent)
     except FileExistsError:
         raise InputError(shown, "exists", "choose another name") from None
     except OSError as error:
@@ -108,6 +118,7 @@ def _create(path: Path, text: str) -> None:
             if error.errno not in NO_LINKS:
                 raise
             _create_in_place(path, text)
+    sync_names(path.parent)
 
 
 def _create_in_place(path: Path, text: str) -> None:
@@ -116,6 +127,7 @@ def _create_in_place(path: Path, text: str) -> None:
         try:
             file.write(text)
             file.flush()
+            os.fsync(file.fileno())
         except BaseException:
             path.unlink(missing_ok=True)
             raise

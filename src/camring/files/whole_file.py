@@ -6,7 +6,17 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-__all__ = ["draft_beside", "put_in_place", "settle", "sync_names", "usual_mode", "write_safely"]
+__all__ = [
+    "draft_beside",
+    "make_folder",
+    "put_in_place",
+    "settle",
+    "sync_folder",
+    "sync_names",
+    "usual_mode",
+    "write_privately",
+    "write_safely",
+]
 
 
 @contextlib.contextmanager
@@ -48,11 +58,55 @@ def write_safely(path: Path, content: bytes) -> None:
         put_in_place(draft, path)
 
 
+def write_privately(path: Path, content: bytes, *, replace: bool = True) -> None:
+    """As `write_safely`, readable by its owner alone; an old file stays without `replace`.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written; `FileExistsError` when it must stay.
+    """
+    with draft_beside(path) as draft:  # whose mode is 0600
+        draft.write_bytes(content)
+        _sync(draft)
+        if replace:
+            os.replace(draft, path)
+        else:
+            os.link(draft, path)
+        sync_names(path.parent)
+
+
 def settle(draft: Path) -> None:
     """What was written is on the disk, and its mode that of other files."""
-    with open(draft, "rb") as file:
-        os.fsync(file.fileno())
+    _sync(draft)
     draft.chmod(usual_mode())
+
+
+def make_folder(path: Path, mode: int = 0o777) -> None:
+    """A folder, with those above it, that a loss of power does not take away; one may be there.
+
+    Raises
+    ------
+    OSError
+        When it cannot be made, or a file is there.
+    """
+    missing = [each for each in (path, *path.parents) if not each.exists()]
+    path.mkdir(mode=mode, parents=True, exist_ok=True)
+    for each in missing:
+        sync_names(each.parent)
+
+
+def sync_folder(folder: Path) -> None:
+    """All that a folder holds is on the disk, by its name."""
+    for where, _, names in os.walk(folder):
+        for name in names:
+            _sync(Path(where, name))
+        sync_names(Path(where))
+
+
+def _sync(path: Path) -> None:
+    with open(path, "rb") as file:
+        os.fsync(file.fileno())
 
 
 def usual_mode(folder: bool = False) -> int:

@@ -18,6 +18,7 @@ from camring.files.motor.keys import nearest
 from camring.files.new_file import write_new_file
 from camring.files.result_names import quantity, result_names
 from camring.files.visible import say
+from camring.files.whole_file import make_folder
 from camring.presentation.console import console
 from camring.presentation.simulation import versions
 
@@ -109,7 +110,7 @@ class Folder:
             scale; its table ends in `_beside.csv`.
         """
         try:
-            self.path.mkdir(parents=True, exist_ok=True)
+            make_folder(self.path)
         except OSError as error:
             reason = (error.strerror or str(error)).lower()
             raise InputError(

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from camring.files.errors import InputError
-from camring.files.whole_file import sync_names, usual_mode, write_safely
+from camring.files.whole_file import make_folder, sync_names, usual_mode, write_safely
 from camring.studies.database import DATABASE_NAME, StudyDamaged, StudyError
 from camring.studies.lock import FolderInUse, FolderLock
 from camring.studies.store import Store
@@ -47,7 +47,7 @@ class StudyFolder:
         require_vacant(path)
         unfinished: Path | None = None
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(path.parent)
             unfinished = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
             unfinished.chmod(usual_mode(folder=True))
             write_safely(unfinished / GIVEN_NAME, given)

@@ -7,13 +7,12 @@ stopped server loses anything that was typed.
 import contextlib
 import hashlib
 import json
-import os
-import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from camring.evaluation.consent import state_folder
+from camring.files.whole_file import make_folder, write_privately
 
 MOST_TEXTS = 400
 MOST_CHARACTERS = 8_000_000
@@ -91,11 +90,9 @@ def remember(path: Path, memory: Memory) -> None:
     """Writes it whole or not at all; a full disk costs the memory, not the work."""
     place = place_of(path)
     with contextlib.suppress(OSError, RuntimeError):
-        place.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-        handle, name = tempfile.mkstemp(dir=place.parent)  # mode 0600
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            json.dump({"version": VERSION, "path": str(path), **vars(memory)}, file)
-        os.replace(name, place)
+        make_folder(place.parent, 0o700)
+        content = json.dumps({"version": VERSION, "path": str(path), **vars(memory)})
+        write_privately(place, content.encode())
 
 
 def recalled(path: Path) -> Memory | None:

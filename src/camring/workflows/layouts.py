@@ -18,7 +18,7 @@ from camring.evaluation.user_programs.command import UserCommand
 from camring.files.errors import InputError
 from camring.files.motor import parse_motor_file
 from camring.files.motor.document import decode, printable, read_text
-from camring.files.whole_file import write_safely
+from camring.files.whole_file import make_folder, write_safely
 from camring.studies.database import DATABASE_NAME
 from camring.studies.study_choices import command_of
 from camring.studies.study_folder import (
@@ -121,7 +121,7 @@ def _open(folder: Path, given: bytes) -> None:
                 )
             return
         require_vacant(folder)
-        folder.mkdir(parents=True)
+        make_folder(folder)
         write_safely(kept, given)
     except OSError as error:
         raise unwritable(folder, error) from error

@@ -25,7 +25,7 @@ from camring.files.motor import MotorFile
 from camring.files.motor.document import printable
 from camring.files.ring_body import thin_wall
 from camring.files.shapes.curve_file import curve_text
-from camring.files.whole_file import write_safely
+from camring.files.whole_file import make_folder, write_safely
 from camring.geometry.port_shape import PlatePorts
 from camring.studies.study_folder import unwritable
 
@@ -262,7 +262,7 @@ def export(
     try:
         for each in made:
             path = place / each.name
-            path.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(path.parent)
             write_safely(path, each.content)
             written.append(Product(path, each.holds, each.figures, each.notes))
     except OSError as error:
