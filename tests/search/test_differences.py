@@ -169,3 +169,16 @@ def test_as_a_stage_descents_start_from_all_that_was_evaluated():
     assert proposal.phase == "descent 1"
     assert proposal.memory["starts"] == [1]
     assert np.linalg.norm(proposal.point - history[1].point) < 1e-5
+
+
+def test_an_objective_may_be_zero_where_the_search_begins():
+    """Then its size is that of its changes."""
+    given = np.full(8, 0.5)
+
+    def bowl(x):
+        return float(100 * np.sum((x - 0.3) ** 2 - (given - 0.3) ** 2)), np.array([-1.0])
+
+    strategy = GradientSearch(8, given=(tuple(given),))
+    found = minimise(problem_of(bowl), strategy, 120, seed=1)
+    assert found.history[0].objective == 0
+    assert found.best.objective == pytest.approx(bowl(np.full(8, 0.3))[0], abs=1e-3)

@@ -35,6 +35,7 @@ INITIAL = "initial"
 SOBOL_STARTS = 8
 ROUNDS = 3  # of one descent: after a round that did not converge it begins anew where it is
 STEPS = 100
+SMALLEST_CHANGE = 1e-3  # of an objective between the best and the middling design: its size
 
 
 @dataclass(frozen=True)
@@ -179,9 +180,14 @@ class GradientSearch(AbstractStrategy):
         known = Known(history, ask)
         # The objectives of the design do not change while a descent goes on.
         usable = [each for each in design if not each.failed]
-        scale = 1 / max(min(abs(each.objective) for each in usable), np.finfo(float).tiny)
+        size = max(min(abs(each.objective) for each in usable), np.finfo(float).tiny)
         slopes, accuracy = self.slopes, self.accuracy
-        if slopes is None:
+        if slopes is not None:
+            scale = 1 / size
+        else:
+            # A function of anybody's may cross zero; then it has no size but that of its changes.
+            changes = float(np.ptp(np.quantile([each.objective for each in usable], [0, 0.5])))
+            scale = 1 / max(size, SMALLEST_CHANGE * changes)
             slopes = Differences.measured(known, history[starts[0]], scale)
             accuracy = max(accuracy, slopes.noise)
         path = Path(known, slopes, scale, history[starts[-1]], self.tolerance)
