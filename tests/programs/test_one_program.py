@@ -17,18 +17,19 @@ def smooth(x, scale):
     return scale * jnp.sin(x) + jnp.exp(-(x**2)) * jnp.roll(x, 1)
 
 
+MADE = []
+jax.monitoring.register_event_duration_secs_listener(  # for good: older JAX cannot take one back
+    lambda event, duration, **_: (
+        MADE.append(event) if event.endswith("backend_compile_duration") else None
+    )
+)
+
+
 @pytest.fixture
 def compiled():
     """How many programs JAX has made since."""
-    made = []
-
-    def heard(event, duration, **_):
-        if event.endswith("backend_compile_duration"):
-            made.append(event)
-
-    jax.monitoring.register_event_duration_secs_listener(heard)
-    yield made
-    jax.monitoring.unregister_event_duration_listener(heard)
+    MADE.clear()
+    return MADE
 
 
 def test_within_a_traced_function_nothing_is_changed():

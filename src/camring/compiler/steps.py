@@ -4,7 +4,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import jax
 import numpy as np
+from jax import lax
 
 from camring.compiler.building import Builder, Wanted, constant, spread
 from camring.compiler.graph import (
@@ -25,6 +27,7 @@ from camring.compiler.graph import (
 
 UNROLLED = 256
 """Rows folded into each of several results one after the other at most."""
+OUTSIDE = -1  # no row has that number
 
 
 def quotient(build: Builder, given: list[Operand], wanted: Wanted) -> Operand:
@@ -60,16 +63,34 @@ def taken(build: Builder, given: list[Operand], wanted: Wanted) -> Operand:
     """Rows by numbers: known ones are a view, others differ from lane to lane."""
     table, number = given
     how, lead = wanted.params["dimension_numbers"], wanted.lead
+    apart = bool(how.operand_batching_dims)  # each lane has numbers of its own
+    if isinstance(table, View) and isinstance(number, Constant) and not apart:
+        if how.collapsed_slice_dims == (0,) and how.offset_dims == (len(lead),):
+            return View(table.node, table.rows[number.values[..., 0]])
+        return View(table.node, _gathered(table.rows, number.values, wanted))
     if not isinstance(table, View) or how.collapsed_slice_dims != (0,):
         raise NotInLanes("a gather that is no taking of rows")
-    if isinstance(number, Constant) and how.offset_dims == (len(lead),):
-        return View(table.node, table.rows[number.values[..., 0]])
     batched = how.operand_batching_dims == (1,) and not how.offset_dims
     if not batched or len(table.lead) != 1:
         raise NotInLanes("a gather that is no taking of rows in each lane")
     if table.rows.size == 1:
         return View(table.node, np.broadcast_to(table.rows.reshape(()), lead))
     return build.add(Taken(lead, wanted.dtype, table=build.following(table), number=number))
+
+
+def _gathered(rows: np.ndarray, numbers: np.ndarray, wanted: Wanted) -> np.ndarray:
+    """What a gather by known numbers does to lanes that it leaves whole, done to rows' numbers."""
+    how, lanes = wanted.params["dimension_numbers"], rows.ndim
+    sizes = (*wanted.params["slice_sizes"][:-1], 1)
+    if lanes in (*how.collapsed_slice_dims, *how.start_index_map):
+        raise NotInLanes("a gather along lanes")
+    with jax.ensure_compile_time_eval():
+        mode = wanted.params["mode"]
+        taken = lax.gather(rows[..., None], numbers, how, sizes, mode=mode, fill_value=OUTSIDE)
+    found = np.asarray(taken)
+    if found.shape != (*wanted.lead, 1) or np.any(found == OUTSIDE):
+        raise NotInLanes("a gather from outside")
+    return found[..., 0]
 
 
 def counted(build: Builder, given: list[Operand], wanted: Wanted) -> Operand:
