@@ -267,11 +267,7 @@ def _write_netcdf(dataset: "xarray.Dataset", place: Path) -> None:
     packed = {name: {"zlib": True, "complevel": 4} for name in WAVEFORMS if name in dataset}
     # Where a disk takes no more in the middle of a file, HDF5 ends the process by a signal.
     memory = io.BytesIO()
-    try:
-        dataset.to_netcdf(memory, engine="h5netcdf", encoding=packed)
-    except (TypeError, ValueError):  # an xarray before 2025.9 writes to places only
-        dataset.to_netcdf(place, engine="h5netcdf", encoding=packed)
-        return
+    dataset.to_netcdf(memory, engine="h5netcdf", encoding=packed)
     place.write_bytes(memory.getvalue())
 
 
