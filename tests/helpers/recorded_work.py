@@ -1,7 +1,7 @@
 """Work that is recorded for `power_cut.py`, and what must be left of it after any cut.
 
 Also a program: `python recorded_work.py study FOLDER COUNT`. Each time that what it
-has done is kept, as far as it is told, it adds a line to `FOLDER/acknowledged`.
+has done is kept, so far as it can know, it adds a line to `FOLDER/acknowledged`.
 """
 
 import os

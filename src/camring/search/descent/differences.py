@@ -61,7 +61,7 @@ class Differences:
         step = SHORTEST
         for _ in range(TRIES):
             row = _row(known, start, step)
-            if row is None:  # where every side fails noise cannot be told
+            if row is None:  # where every side fails noise cannot be measured
                 return cls(known, step, 0.0)
             values = np.array([_outputs(each, scale) for each in row])
             noise = np.abs(THIRD_ORDER @ values)
