@@ -21,7 +21,9 @@ from camring.search.problem import Proposal, Stop
 from camring.search.sampling import generator, initial_point
 from camring.search.strategies import STRATEGIES, Task, strategy_named
 
-WITHOUT_SLOPES = tuple(name for name in STRATEGIES if name != "gradient")
+DESCENDING = ("automatic", "differences", "gradient")
+"""Not offered: they go by tiny steps, which trials on a grid, and running ones, do not answer."""
+WITHOUT_SLOPES = tuple(name for name in STRATEGIES if name not in DESCENDING)
 ENDLESS = 10**9  # evaluations: no descent at the end
 CONSTRAINTS = "constraints"
 TRIES = 64
@@ -37,9 +39,7 @@ class CamringSampler(BaseSampler):
     Parameters
     ----------
     strategy
-        "bayesian", "cma-es", "cobyqa", "differences", "nelder-mead" or "scbo". "automatic"
-        is "differences" above six parameters, where `budget` pays for a descent and the
-        objective is smooth enough, which is measured; else "scbo".
+        "bayesian", "cma-es", "cobyqa", "nelder-mead" or "scbo".
     seed
         Where all chance comes from: the same seed, the same trials, bit for bit.
     space
@@ -63,7 +63,7 @@ class CamringSampler(BaseSampler):
 
     def __init__(
         self,
-        strategy: str = "automatic",
+        strategy: str = "scbo",
         *,
         seed: int = 0,
         space: Mapping[str, BaseDistribution] | None = None,
