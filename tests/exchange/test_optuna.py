@@ -195,8 +195,9 @@ def test_what_it_cannot_search_is_refused_in_a_sentence():
     both = optuna.create_study(directions=["minimize"] * 2, sampler=sampler())
     with pytest.raises(InputError, match="has 2 objectives"):
         both.optimize(objective, 1)
-    with pytest.raises(InputError, match="choose bayesian"):
-        camring.optuna.CamringSampler("gradient")
+    for each in ("automatic", "differences", "gradient"):
+        with pytest.raises(InputError, match="choose bayesian"):
+            camring.optuna.CamringSampler(each)
     with pytest.raises(InputError, match="seed is -1"):
         camring.optuna.CamringSampler(seed=-1)
 
