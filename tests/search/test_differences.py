@@ -5,7 +5,7 @@ import zlib
 import numpy as np
 import pytest
 
-from camring.search.descent.differences import LONGEST, SHORTEST, Differences, TooNoisy
+from camring.search.descent.differences import LONGEST, SHORTEST, Differences, NoSlopes
 from camring.search.descent.gradient import GradientSearch
 from camring.search.descent.path import Known
 from camring.search.minimise import minimise
@@ -52,10 +52,10 @@ class Laboratory:
         return Evaluation(0, point, *self.function(point))
 
 
-def measured(function, start, **settings):
+def measured(function, start, sizes=(1.0, 1.0), **settings):
     laboratory = Laboratory(function, **settings)
     known = Known([], laboratory)
-    return Differences.measured(known, known.at(np.array(start)), 1.0), laboratory
+    return Differences.measured(known, known.at(np.array(start)), np.array(sizes)), laboratory
 
 
 INSIDE, ON_THE_EDGE = [0.25, 0.625, 0.1875, 0.75], [0.0, 1.0, 1.0, 0.5]
@@ -86,15 +86,30 @@ def test_with_noise_the_step_is_so_long_that_slopes_are_still_some(size):
 
 @pytest.mark.parametrize("size", [3e-4, 1e-2, 1.0])
 def test_noise_that_leaves_no_slopes_is_said(size):
-    with pytest.raises(TooNoisy, match="differ by noise"):
+    with pytest.raises(NoSlopes, match="differ by noise"):
         measured(noisy(smooth, size), INSIDE)
 
 
-def test_what_is_constant_or_has_flat_limits_is_not_noisy():
+def test_what_has_flat_limits_or_rounds_is_not_noisy():
     differences, _ = measured(lambda x: (x[0], np.array([-1.0])), INSIDE)
     assert differences.step == SHORTEST
-    differences, _ = measured(lambda x: (1.0, np.array([-1.0])), INSIDE)
+    differences, _ = measured(lambda x: (x[0] + 1e3, np.array([-0.1 - x[1] / 3])), INSIDE)
     assert differences.step == SHORTEST
+
+
+@pytest.mark.parametrize("value", [0.0, 3.0])
+def test_where_the_objective_is_the_same_that_is_said(value):
+    with pytest.raises(NoSlopes, match="is the same"):
+        measured(lambda x: (value, np.array([x[0]])), INSIDE)
+
+
+def test_a_limit_in_large_units_hides_no_noise():
+    def evaluate(x):
+        objective, _ = noisy(smooth, 1e-2)(x)
+        return objective, 1e6 * smooth(x)[1]
+
+    with pytest.raises(NoSlopes, match="differ by noise"):
+        measured(evaluate, INSIDE, sizes=(1.0, 1e6))
 
 
 def test_where_a_step_fails_the_other_side_is_taken():
@@ -182,3 +197,13 @@ def test_an_objective_may_be_zero_where_the_search_begins():
     found = minimise(problem_of(bowl), strategy, 120, seed=1)
     assert found.history[0].objective == 0
     assert found.best.objective == pytest.approx(bowl(np.full(8, 0.3))[0], abs=1e-3)
+
+
+@pytest.mark.parametrize("level", [0.0, 1e4, -1e6])
+def test_a_constant_part_of_the_objective_costs_no_accuracy(level):
+    def raised(point):
+        objective, limits = valley(point)
+        return objective + level, limits
+
+    found = searched("differences", raised)
+    assert found.best.objective - level < 0.05

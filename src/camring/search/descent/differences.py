@@ -21,12 +21,13 @@ TRIES = 3  # steps at which it is
 THIRD_ORDER = np.array([-1.0, 3.0, -3.0, 1.0]) / np.sqrt(20.0)
 """Of four values in a row: their third difference, over its deviation where they are noise of 1."""
 LEAST_SHARE = 0.1  # of the steepest output: a slope that is flatter than that need not be exact
+ROUNDING = 8 * np.finfo(float).eps  # of an output: no noise of the model's
 
 Outputs = Float[np.ndarray, " output"]
 
 
-class TooNoisy(Exception):
-    """No step is long enough for differences to say anything."""
+class NoSlopes(Exception):
+    """Differences say nothing, whatever the step."""
 
 
 class Differences:
@@ -37,7 +38,7 @@ class Differences:
     step
         In box widths.
     noise
-        Of the objective, over that of a good design.
+        Of the objective, over its size.
     """
 
     def __init__(self, known: Known, step: float, noise: float) -> None:
@@ -45,26 +46,32 @@ class Differences:
         self._found: dict[bytes, tuple[Point, Float[np.ndarray, "constraint dimension"]]] = {}
 
     @classmethod
-    def measured(cls, known: Known, start: Evaluation, scale: float) -> "Differences":
+    def measured(cls, known: Known, start: Evaluation, sizes: Outputs) -> "Differences":
         """With the shortest step that noise allows, measured at a point that did not fail.
 
         Parameters
         ----------
-        scale
-            Makes objectives of the order of one.
+        sizes
+            Of the objective and of each constraint, by which noise and slopes are compared.
 
         Raises
         ------
-        TooNoisy
-            When none does.
+        NoSlopes
+            When no step is long enough, or the objective is the same everywhere there.
         """
         step = SHORTEST
         for _ in range(TRIES):
             row = _row(known, start, step)
             if row is None:  # where every side fails noise cannot be measured
                 return cls(known, step, 0.0)
-            values = np.array([_outputs(each, scale) for each in row])
+            values = np.array([outputs_of(each) for each in row]) / sizes
+            if np.all(values[:, 0] == values[0, 0]):
+                raise NoSlopes(
+                    f"The objective is the same {step:.1g} box widths apart: no descent can be had "
+                    "from differences."
+                )
             noise = np.abs(THIRD_ORDER @ values)
+            noise[noise <= ROUNDING * np.abs(values).max(axis=0)] = 0.0
             slopes = np.abs(values[-1] - values[0]) / (ROWS * step)
             counted = np.maximum(slopes, LEAST_SHARE * slopes.max())
             needed = float(np.max(_ratio(noise, QUIET * counted)))
@@ -73,7 +80,7 @@ class Differences:
             if needed > LONGEST:
                 break
             step = 2.0 ** np.ceil(np.log2(needed))
-        raise TooNoisy(
+        raise NoSlopes(
             f"Evaluations {step:.1g} box widths apart differ by noise as much as by the design: "
             "no descent can be had from their differences."
         )
@@ -108,11 +115,12 @@ def _slope(here: Evaluation, there: Evaluation, axis: int) -> Outputs:
     if there.failed:
         return np.zeros(1 + len(here.constraints))
     step = there.point[axis] - here.point[axis]
-    return (_outputs(there, 1.0) - _outputs(here, 1.0)) / step
+    return (outputs_of(there) - outputs_of(here)) / step
 
 
-def _outputs(evaluation: Evaluation, scale: float) -> Outputs:
-    return np.array([scale * evaluation.objective, *evaluation.constraints])
+def outputs_of(evaluation: Evaluation) -> Outputs:
+    """The objective, then each constraint."""
+    return np.array([evaluation.objective, *evaluation.constraints])
 
 
 def _row(known: Known, start: Evaluation, step: float) -> Sequence[Evaluation] | None:

@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 from scipy.optimize import minimize
 
-from camring.search.descent.differences import Differences, TooNoisy
+from camring.search.descent.differences import Differences, NoSlopes, Outputs, outputs_of
 from camring.search.descent.path import Known, Path, Point, Slopes, Stalled
 from camring.search.live_loop import Asks, HeldLoop
 from camring.search.problem import (
@@ -35,7 +35,7 @@ INITIAL = "initial"
 SOBOL_STARTS = 8
 ROUNDS = 3  # of one descent: after a round that did not converge it begins anew where it is
 STEPS = 100
-SMALLEST_CHANGE = 1e-3  # of an objective between the best and the middling design: its size
+SMALLEST_CHANGE = 1e-3  # of an objective between the best and the middling design: its least size
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class GradientSearch(AbstractStrategy):
         with one_linear_algebra_thread():
             while True:
                 if len(starts) == len(ends):
-                    if (reason := self._enough(history, ends)) is not None:
+                    if (reason := self._enough(history[:begun], history, ends)) is not None:
                         return Stop(reason)
                     start = self._next_start(history[:begun], history, starts, ends)
                     if start is None:
@@ -110,17 +110,20 @@ class GradientSearch(AbstractStrategy):
                     if unknown.ahead:
                         kept["ahead"] = [each.tolist() for each in unknown.ahead]
                     return Proposal(unknown.point, f"descent {len(starts)}", kept)
-                except TooNoisy as noisy:
-                    return Stop(str(noisy))
+                except NoSlopes as none:
+                    return Stop(str(none))
                 ends.append(reached.trial)
 
-    def _enough(self, history: Sequence[Evaluation], ends: Sequence[int]) -> str | None:
+    def _enough(
+        self, design: Sequence[Evaluation], history: Sequence[Evaluation], ends: Sequence[int]
+    ) -> str | None:
         """Why no further descent is needed, if so."""
         best = best_of(history, self.tolerance)
         if best is None or not ends:
             return None
         close = [history[end] for end in ends if history[end].feasible(self.tolerance)]
-        limit = best.objective + self.agreement * abs(best.objective)
+        size = min(abs(best.objective), _sizes([each for each in design if not each.failed])[0])
+        limit = best.objective + self.agreement * size
         agreeing = sum(each.objective <= limit for each in close)
         if agreeing >= self.agreeing:
             return (
@@ -161,8 +164,8 @@ class GradientSearch(AbstractStrategy):
         ------
         Unknown
             With the point at which it wants to look next.
-        TooNoisy
-            When no slopes can be had.
+        NoSlopes
+            When differences say nothing.
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # that a step was clipped to the box
@@ -180,17 +183,11 @@ class GradientSearch(AbstractStrategy):
         known = Known(history, ask)
         # The objectives of the design do not change while a descent goes on.
         usable = [each for each in design if not each.failed]
-        size = max(min(abs(each.objective) for each in usable), np.finfo(float).tiny)
-        slopes, accuracy = self.slopes, self.accuracy
-        if slopes is not None:
-            scale = 1 / size
-        else:
-            # A function of anybody's may cross zero; then it has no size but that of its changes.
-            changes = float(np.ptp(np.quantile([each.objective for each in usable], [0, 0.5])))
-            scale = 1 / max(size, SMALLEST_CHANGE * changes)
-            slopes = Differences.measured(known, history[starts[0]], scale)
+        slopes, accuracy, sizes = self.slopes, self.accuracy, _sizes(usable)
+        if slopes is None:
+            slopes = Differences.measured(known, history[starts[0]], sizes)
             accuracy = max(accuracy, slopes.noise)
-        path = Path(known, slopes, scale, history[starts[-1]], self.tolerance)
+        path = Path(known, slopes, 1 / sizes[0], history[starts[-1]], self.tolerance)
         try:
             for _ in range(ROUNDS):
                 before = path.best()
@@ -235,3 +232,20 @@ class GradientSearch(AbstractStrategy):
             method="L-BFGS-B",
             options={"maxiter": STEPS},
         )
+
+
+def _sizes(usable: Sequence[Evaluation]) -> Outputs:
+    """Of the objective and of each constraint among designs that did not fail.
+
+    A good objective's own, unless it crosses zero or has a large constant part: then it has no
+    size but that of its changes. A constraint's is how far it reaches.
+    """
+    outputs = np.array([outputs_of(each) for each in usable])
+    lowest, middle, highest = np.quantile(outputs[:, 0], [0, 0.5, 1])
+    sizes = np.ptp(outputs, axis=0)
+    own = np.min(np.abs(outputs[:, 0]))
+    if highest > lowest:
+        own = np.clip(own, SMALLEST_CHANGE * (middle - lowest), highest - lowest)
+    sizes[0] = own
+    found: Outputs = np.where(sizes > np.finfo(float).tiny, sizes, 1.0)
+    return found

@@ -79,7 +79,7 @@ class Path:
         here = self._at(point)
         if here.failed:
             sound = [each.objective for each in self.seen if not each.failed]
-            return self._scale * (max(sound) + 10 * abs(max(sound)))
+            return self._scale * max(sound) + 10 * max(self._scale * abs(max(sound)), 1.0)
         return self._scale * here.objective
 
     def objective_slope(self, point: Point) -> Point:
